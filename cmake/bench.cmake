@@ -1,0 +1,11 @@
+# One Google Benchmark program for each tests/bench/*_bench.cpp.
+find_package(benchmark REQUIRED)
+file(GLOB sources CONFIGURE_DEPENDS tests/bench/*_bench.cpp)
+foreach(source ${sources})
+    cmake_path(GET source STEM program)
+    add_executable(${program} ${source})
+    set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bench)
+    target_link_libraries(${program} PRIVATE pellucid benchmark::benchmark_main)
+    target_compile_definitions(${program} PRIVATE PELLUCID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    pellucid_configure(${program})
+endforeach()

@@ -1,0 +1,43 @@
+# One GoogleTest program a label, from tests/<label>/*_test.cpp, and the consumer of the installed package.
+# The slow label is built, so that it cannot rot, but ctest knows it only under PELLUCID_SLOW_TESTS.
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+foreach(label unit statistical analytic golden slow)
+    file(GLOB sources CONFIGURE_DEPENDS tests/${label}/*_test.cpp)
+    if(NOT sources)
+        continue()
+    endif()
+    set(program ${label}_tests)
+    add_executable(${program} ${sources})
+    set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+    target_link_libraries(${program} PRIVATE pellucid GTest::gtest_main fmt::fmt nlohmann_json::nlohmann_json)
+    target_compile_definitions(${program} PRIVATE
+        PELLUCID_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+        PELLUCID_SHARED_SCENES="${PROJECT_SOURCE_DIR}/../shared/scenes"
+        PELLUCID_BINARY="${PROJECT_BINARY_DIR}/pellucid")
+    pellucid_configure(${program})
+    # Link time is not optimised here: the objects' own machine code gives the same bits and links in a second.
+    target_link_options(${program} PRIVATE $<$<BOOL:${PELLUCID_LTO}>:-fno-lto>)
+    if(TARGET pellucid_cli)
+        add_dependencies(${program} pellucid_cli)
+    endif()
+    if(label STREQUAL "slow")
+        set(timeout 3600)
+    else()
+        set(timeout 600)
+    endif()
+    if(NOT label STREQUAL "slow" OR PELLUCID_SLOW_TESTS)
+        gtest_discover_tests(${program} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${label}."
+                             WORKING_DIRECTORY ${PROJECT_BINARY_DIR} PROPERTIES LABELS ${label} TIMEOUT ${timeout})
+    endif()
+endforeach()
+
+# A program outside the build, against the installed package. Instrumented builds would need their flags there too.
+if(EXISTS ${PROJECT_SOURCE_DIR}/tests/consumer/CMakeLists.txt AND NOT PELLUCID_SANITIZE AND NOT PELLUCID_COVERAGE)
+    add_test(NAME consumer
+             COMMAND ${CMAKE_COMMAND} -DBUILD_DIR=${PROJECT_BINARY_DIR} -DSOURCE_DIR=${PROJECT_SOURCE_DIR}/tests/consumer
+                     -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER} -DCONFIG=$<CONFIG>
+                     -P ${PROJECT_SOURCE_DIR}/tests/consumer/run.cmake)
+    set_tests_properties(consumer PROPERTIES LABELS package TIMEOUT 600)
+endif()

@@ -1,0 +1,75 @@
+/// Low-discrepancy numbers keyed by (seed, stream, index, dimension): no state is shared between threads, so the same key
+/// gives the same number in any order. A stream is a pixel (index = sample) or a photon pass (index = photon path).
+/// Padded two-dimensional Sobol points with hash-based Owen scrambling and an Owen-scrambled index. [Burley2020]
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+#include <pellucid/math/hash.h>
+
+namespace pellucid {
+
+class Sampler {
+public:
+    Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t index) noexcept
+        : key_(hashCombine(seed, stream)), index_(index) {}
+
+    /// A point of a (0,2)-sequence in [0,1)^2.
+    [[nodiscard]] glm::vec2 next2D() noexcept {
+        const std::uint64_t seed = hash64(key_ + 0x9e3779b97f4a7c15ULL * ++dimension_);
+        const auto low = static_cast<std::uint32_t>(seed), high = static_cast<std::uint32_t>(seed >> 32U);
+        const std::uint32_t index = reverse(laineKarras(reverse(index_), low ^ (high << 7U)));
+        return {toFloat(reverse(laineKarras(index, low))), toFloat(reverse(laineKarras(pascal(index), high)))};
+    }
+
+    [[nodiscard]] float next1D() noexcept {
+        const std::uint64_t seed = hash64(key_ + 0x9e3779b97f4a7c15ULL * ++dimension_);
+        const auto low = static_cast<std::uint32_t>(seed), high = static_cast<std::uint32_t>(seed >> 32U);
+        const std::uint32_t index = reverse(laineKarras(reverse(index_), high));
+        return toFloat(reverse(laineKarras(index, low)));
+    }
+
+    /// Goes to a fixed dimension, so that a decision keeps its numbers whatever was drawn before it.
+    void setDimension(std::uint64_t dimension) noexcept { dimension_ = dimension; }
+
+private:
+    [[nodiscard]] static constexpr std::uint32_t reverse(std::uint32_t x) noexcept {
+        x = __builtin_bswap32(x);
+        x = ((x & 0x0f0f0f0fU) << 4U) | ((x >> 4U) & 0x0f0f0f0fU);
+        x = ((x & 0x33333333U) << 2U) | ((x >> 2U) & 0x33333333U);
+        return ((x & 0x55555555U) << 1U) | ((x >> 1U) & 0x55555555U);
+    }
+
+    /// Owen scrambling of a number whose bits stand in reverse (lowest bit = most significant digit).
+    [[nodiscard]] static constexpr std::uint32_t laineKarras(std::uint32_t x, std::uint32_t seed) noexcept {
+        x ^= x * 0x3d20adeaU;
+        x += seed;
+        x *= (seed >> 16U) | 1U;
+        x ^= x * 0x05526c56U;
+        x ^= x * 0x53a22864U;
+        return x;
+    }
+
+    /// The second Sobol dimension, bits in reverse: its generator is Pascal's triangle modulo 2, a superset sum over bits.
+    [[nodiscard]] static constexpr std::uint32_t pascal(std::uint32_t x) noexcept {
+        x ^= (x & 0xaaaaaaaaU) >> 1U;
+        x ^= (x & 0xccccccccU) >> 2U;
+        x ^= (x & 0xf0f0f0f0U) >> 4U;
+        x ^= (x & 0xff00ff00U) >> 8U;
+        x ^= (x & 0xffff0000U) >> 16U;
+        return x;
+    }
+
+    [[nodiscard]] static constexpr float toFloat(std::uint32_t x) noexcept {
+        return static_cast<float>(x >> 8U) * 0x1p-24F;
+    }
+
+    std::uint64_t key_;
+    std::uint32_t index_;
+    std::uint64_t dimension_ = 0;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,63 @@
+/// Every parameter by name: one table gives --set, --config, record.json, docs/options.md and the tuner the same names,
+/// defaults, ranges and scales.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace pellucid {
+
+/// Automatic choices are written as -1 (numbers) or "auto" (words): the plan resolves them.
+struct Settings {
+    // path tracing
+    std::string misHeuristic = "power";     ///< path.mis: balance | power
+    double rouletteThreshold = 1.0;         ///< path.roulette: throughput below which Russian roulette may end a path; 0: never
+    int maxDepth = 0;                       ///< path.max_depth: number of surface vertices; 0: no limit
+    // surfaces
+    double castRoughness = 0.3;             ///< surface.cast_roughness
+    // photons
+    int causticPhotons = -1;                ///< photon.caustic: photon paths an iteration; -1: the plan sizes it
+    int globalPhotons = -1;                 ///< photon.global
+    double causticRadius = -1.0;            ///< photon.radius: in pixel footprints
+    double alpha = 2.0 / 3.0;               ///< photon.alpha: radius reduction
+    std::string guiding = "auto";           ///< photon.guiding: auto | on | off
+    std::string causticMap = "auto";        ///< photon.caustic_map: auto | on | off
+    // irradiance cache and gather
+    std::string cache = "auto";             ///< cache.mode: auto | on | off
+    double cacheError = -1.0;               ///< cache.error: Ward's a
+    int gatherRays = -1;                    ///< cache.rays: gather rays a record
+    double minSpacing = -1.0;               ///< cache.min_spacing: in pixel footprints
+    double maxSpacing = -1.0;               ///< cache.max_spacing
+    // camera
+    double aperture = 0.0;                  ///< camera.aperture: lens diameter in metres
+    double focus = 1.0;                     ///< camera.focus: in metres
+};
+
+/// One row of the table.
+struct Parameter {
+    std::string_view name;                  ///< as --set takes it, e.g. "cache.error"
+    std::variant<double Settings::*, int Settings::*, std::string Settings::*> member;
+    double lower, upper;                    ///< allowed range of numbers (automatic -1 apart)
+    bool automatic;                         ///< -1 / "auto" allowed
+    bool logScale;                          ///< how the tuner steps through it
+    std::string_view choices;               ///< words, separated by '|'
+    std::string_view unit, help;
+};
+
+[[nodiscard]] std::span<const Parameter> parameters() noexcept;
+
+/// "name", "value" as typed. Throws Error{Usage} with the nearest name, or the range.
+void setParameter(Settings& settings, std::string_view name, std::string_view value);
+
+/// A TOML file of `section.key = value`; unknown names are errors that name file and line.
+void loadSettings(Settings& settings, const std::string& file);
+
+/// All parameters as (name, value) in the table's order.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> settingsAsText(const Settings& settings);
+
+}  // namespace pellucid

@@ -1,0 +1,133 @@
+/// Every light of a scene in one list, with the three samplings that transport needs: towards a point (next-event
+/// estimation), its density for a light that was hit (multiple importance sampling), and emission of photons.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include <pellucid/math/ray.h>
+#include <pellucid/math/rgb.h>
+#include <pellucid/scene/environment.h>
+
+namespace pellucid {
+
+/// In normalised scene space. `uv` of both sets at the corners, for textured emission.
+struct EmissiveTriangle {
+    glm::vec3 corner[3];
+    glm::vec3 normal{0.0F};  ///< unit geometric normal, by winding (after the transform)
+    float area = 0.0F;
+    bool twoSided = false;
+    std::uint32_t geometry = 0, primitive = 0;
+    Rgb meanRadiance{0.0F};  ///< texture average over the triangle (an estimate for choosing, > 0 wherever it emits)
+};
+
+/// Punctual lights in normalised scene space (intensity already scaled).
+struct PointEmitter {
+    glm::vec3 position{0.0F};
+    Rgb intensity{0.0F};  ///< W/sr (in scene units squared)
+};
+struct SpotEmitter {
+    glm::vec3 position{0.0F}, direction{0.0F, 0.0F, -1.0F};
+    Rgb intensity{0.0F};
+    float cosInner = 1.0F, cosOuter = 0.7F;  ///< KHR_lights_punctual's falloff between them
+};
+struct DirectionalEmitter {
+    glm::vec3 direction{0.0F, -1.0F, 0.0F};  ///< in which the light travels
+    Rgb irradiance{0.0F};                    ///< W/m^2 on a surface that faces it
+};
+
+enum class LightKind : std::uint8_t { Point, Spot, Directional, Triangle, Environment };
+
+/// A light seen from a shading point.
+struct LightSample {
+    glm::vec3 wi{0.0F};     ///< unit, to the light
+    float distance = 0.0F;  ///< infinity for directional and environment
+    Rgb radiance{
+        0.0F};  ///< times f |cos| / pdfSolidAngle is the estimate; for a delta light: the irradiance-like I/d^2 or E, already divided by nothing
+    float pdfSolidAngle =
+        0.0F;  ///< of the chosen direction, with the choice of the light; for a delta light: the probability of choosing it
+    bool delta = false;
+    std::uint32_t light = 0;
+};
+
+/// The start of a photon's path.
+struct EmissionSample {
+    Ray ray;
+    Rgb flux{0.0F};  ///< Le cos / (p_light p_position p_direction), in W: the photon's power for one emitted path
+    float pdfPosition =
+        0.0F;  ///< per area (of the emitter, or of the disc that stands for infinity); 1 for point lights
+    float pdfDirection = 0.0F;  ///< per solid angle; 1 for directional
+    float pmfLight = 0.0F;
+    std::uint32_t light = 0;
+    bool delta = false;  ///< point, spot, directional
+};
+
+/// Five numbers in [0,1) that make an emission: the primary sample space that emission guiding works in.
+struct EmissionNumbers {
+    float chooseLight = 0.0F;
+    glm::vec2 position{0.0F}, direction{0.0F};
+};
+
+class Lights {
+public:
+    struct Parts {
+        std::vector<PointEmitter> points;
+        std::vector<SpotEmitter> spots;
+        std::vector<DirectionalEmitter> directionals;
+        std::vector<EmissiveTriangle> triangles;
+        const Environment* environment = nullptr;  ///< null or black: none
+        glm::vec3 sceneCentre{0.0F};
+        float sceneRadius = 1.0F;      ///< photons from infinity start on a disc of this radius, beyond the scene
+        std::uint32_t geometries = 0;  ///< number of geometries; only a hint, the triangles' own numbers count
+    };
+    /// Radiance of a triangle at barycentrics, towards `wo`: given by the scene (textures). Called by sample() and
+    /// sampleEmission(). Null: every triangle emits its mean radiance.
+    using TriangleRadiance = Rgb (*)(const void* scene, std::uint32_t geometry, std::uint32_t primitive,
+                                     const glm::vec2& barycentric, const glm::vec3& wo);
+
+    /// Lights that emit nothing (black, without area, not finite) are dropped. Numbers run over points, spots,
+    /// triangles, directionals (each in the order of `parts`), then the environment.
+    Lights(Parts parts, TriangleRadiance radiance, const void* scene);
+    ~Lights();
+    Lights(Lights&&) noexcept;
+    Lights& operator=(Lights&&) noexcept;
+
+    [[nodiscard]] std::size_t count() const noexcept;
+    [[nodiscard]] LightKind kind(std::uint32_t light) const noexcept;
+    /// Total emitted power in W (infinity: through the scene's bounding sphere), for choosing.
+    [[nodiscard]] double power(std::uint32_t light) const noexcept;
+    [[nodiscard]] double totalPower() const noexcept;
+
+    /// One light and a point on it, seen from `point` with normal `normal` (zero vector: no surface, no horizon). Among few
+    /// lights the choice follows an estimate of what each sends to the point, among many a light tree (bounds, strength,
+    /// orientation); a light that cannot reach the point has no share. Empty: black or below the horizon.
+    [[nodiscard]] std::optional<LightSample> sample(const glm::vec3& point, const glm::vec3& normal, float chooseLight,
+                                                    const glm::vec2& u) const noexcept;
+
+    /// Probability with which sample() from (point, normal) chooses `light`. Over few lights it sums to 1, or to 0 where none
+    /// reaches the point; over many to at most 1, since the tree may end at a light that proves out of reach.
+    [[nodiscard]] float choicePmf(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal) const noexcept;
+    /// Density per solid angle with which sample() from (point, normal) makes direction `wi` to the emissive triangle
+    /// (geometry, primitive) hit at `distance`. 0 when that triangle is no light, on the dark side of a one-sided one and
+    /// below the horizon of `normal`: what sample() cannot make.
+    [[nodiscard]] float pdfTriangle(const glm::vec3& point, const glm::vec3& normal, std::uint32_t geometry,
+                                    std::uint32_t primitive, const glm::vec3& wi, float distance) const noexcept;
+    [[nodiscard]] float pdfEnvironment(const glm::vec3& point, const glm::vec3& normal,
+                                       const glm::vec3& wi) const noexcept;
+
+    /// Emission with lights chosen by power.
+    [[nodiscard]] std::optional<EmissionSample> sampleEmission(const EmissionNumbers& u) const noexcept;
+    /// Emission from one given light (pmfLight = 1): guiding chooses the light itself.
+    [[nodiscard]] std::optional<EmissionSample> sampleEmissionFrom(std::uint32_t light, const glm::vec2& position,
+                                                                   const glm::vec2& direction) const noexcept;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,31 @@
+/// The caustic photon map: L S+ D photons, and the irradiance that they make at a point. Bias enters here: the kernel blurs
+/// what is smaller than its radius (zero where the irradiance is linear), and loses light within a radius of an edge.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include <pellucid/surface/bsdf.h>
+#include <pellucid/transport/photon.h>
+
+namespace pellucid {
+
+class CausticMap {
+public:
+    explicit CausticMap(PhotonList photons);
+    ~CausticMap();
+    CausticMap(CausticMap&&) noexcept;
+
+    /// Irradiance (W m^-2) from the photons within `radius`, each weighted by the lobe's transmittance T for its direction:
+    /// E = sum dPhi T(wi.n) K(d/r) / (pi r^2), Epanechnikov kernel K = 2 (1 - d^2/r^2). [Jensen1996], [Silverman1986]
+    [[nodiscard]] Rgb irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
+                                 const DiffuseLobe& lobe, float radius) const noexcept;
+
+    [[nodiscard]] std::size_t size() const noexcept;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pellucid

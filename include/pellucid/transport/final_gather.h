@@ -1,0 +1,21 @@
+/// The hemisphere gather that makes one irradiance record: M x N stratified cosine-distributed rays give the irradiance, its
+/// two gradients [WardHeckbert1992, signs and sums as in docs/theory.md] and the harmonic mean distance.
+#pragma once
+
+#include <cstdint>
+
+#include <pellucid/transport/irradiance_cache.h>
+#include <pellucid/transport/walk.h>
+
+namespace pellucid {
+
+struct GatherOptions {
+    int rays = 400;               ///< about; rounded to M x N with N about pi M
+    float minRadius = 0.0F, maxRadius = 1.0F;   ///< bounds of R, scene units
+    std::uint64_t seed = 0;
+};
+
+/// `point` must be valid. `key` identifies the record among all of the render. Returns a record with bounded radius.
+[[nodiscard]] IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const GatherOptions& options, std::uint64_t key);
+
+}  // namespace pellucid

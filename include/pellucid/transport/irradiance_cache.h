@@ -1,0 +1,72 @@
+/// The irradiance cache: indirect irradiance at sparse records, interpolated with Ward's weights [Ward1988] and rotational
+/// and translational gradients [WardHeckbert1992], radii clamped between neighbours [Krivanek2006]. Bias enters here: the
+/// interpolation is of first order, and a record speaks for a region. Look-ups are read-only and lock-free; records are
+/// added between rounds in one order.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include <pellucid/math/bounds.h>
+#include <pellucid/math/rgb.h>
+#include <pellucid/surface/bsdf.h>
+
+namespace pellucid {
+
+/// One gather. Gradients hold a column for each colour channel.
+struct IrradianceRecord {
+    glm::vec3 position{0.0F}, normal{0.0F};
+    Rgb irradiance{0.0F};             ///< W m^-2
+    Rgb grazingShare{0.0F};           ///< E5 / E (surface/bsdf.h, DiffuseLobe)
+    std::array<glm::vec3, 3> rotation{};     ///< dE/d(rotation), rad^-1, as (n_i x n) . rotation
+    std::array<glm::vec3, 3> translation{};  ///< dE/dx, per scene unit
+    float harmonicDistance = 0.0F;    ///< R: mean distance of what is seen
+    float radius = 0.0F;              ///< R after bounds and neighbour clamping
+};
+
+struct Irradiance {
+    Rgb plain{0.0F}, grazing{0.0F};   ///< E and E5
+    int records = 0;                  ///< that spoke
+
+    /// int L T(wi) cos for a lobe: a E - b E5.
+    [[nodiscard]] Rgb through(const DiffuseLobe& lobe) const noexcept {
+        return glm::max(lobe.a * plain - lobe.b * grazing, Rgb(0.0F));
+    }
+};
+
+class IrradianceCache {
+public:
+    /// `error` is Ward's a: a record speaks where |x - x_i| / R_i + sqrt(1 - n.n_i) < a.
+    IrradianceCache(const Bounds& scene, float error);
+
+    /// Adds a record, clamps its radius and its neighbours' (each by the other's plus their distance).
+    void insert(IrradianceRecord record);
+
+    /// Empty where no record speaks.
+    [[nodiscard]] std::optional<Irradiance> lookup(const glm::vec3& position, const glm::vec3& normal) const noexcept;
+
+    [[nodiscard]] const std::vector<IrradianceRecord>& records() const noexcept { return records_; }
+    [[nodiscard]] float error() const noexcept { return error_; }
+
+private:
+    struct Node {
+        std::array<std::int32_t, 8> child{-1, -1, -1, -1, -1, -1, -1, -1};
+        std::vector<std::uint32_t> records;
+    };
+    template <class Visit>
+    void forNear(const glm::vec3& point, Visit&& visit) const;
+    void index(std::uint32_t record, float reach);
+    void place(std::uint32_t node, const glm::vec3& lower, float size, std::uint32_t record, float reach);
+
+    float error_;
+    glm::vec3 lower_;
+    float size_;
+    std::vector<Node> nodes_;
+    std::vector<IrradianceRecord> records_;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,29 @@
+/// Light tracing for exactly the class E X S+ L: caustics that the camera sees directly. Each photon that arrives at a
+/// non-casting surface over S lobes alone is connected to the lens. Unbiased; sees point lights; blind to caustics that are
+/// themselves seen in a mirror or through glass.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <pellucid/base/parallel.h>
+#include <pellucid/scene/scene.h>
+#include <pellucid/transport/photon_trace.h>
+
+namespace pellucid {
+
+struct LightSplat {
+    std::uint32_t pixel = 0;
+    Rgb radiance{0.0F};       ///< already divided by the number of paths of the pass
+};
+
+struct LightPass {
+    std::vector<LightSplat> splats;   ///< in the order of the paths
+    std::vector<UsefulEmission> useful;
+    std::uint64_t rays = 0, emitted = 0;
+};
+
+[[nodiscard]] LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide, const PhotonPassKey& key,
+                                        const Workers& workers);
+
+}  // namespace pellucid

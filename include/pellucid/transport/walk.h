@@ -1,0 +1,104 @@
+/// One walk from the eye (or from a point that gathers) through the scene: the path tracer, and with maps the final-gather
+/// path tracer. With no map at all it is the unbiased baseline; each map takes over exactly the class that
+/// transport/path_classes.h gives it.
+#pragma once
+
+#include <cstdint>
+
+#include <pellucid/math/sampler.h>
+#include <pellucid/scene/scene.h>
+#include <pellucid/transport/path_classes.h>
+
+namespace pellucid {
+
+class CausticMap;
+class RadianceMap;
+class IrradianceCache;
+
+/// Null: the pass is left out and its class is path traced.
+struct Maps {
+    const CausticMap* caustic = nullptr;
+    const RadianceMap* global = nullptr;
+    const IrradianceCache* cache = nullptr;
+    float causticFootprints = 1.0F;   ///< kernel radius in pixel footprints
+    float causticRadiusMin = 0.0F;    ///< in scene units
+    float causticRadiusMax = 1.0F;
+};
+
+struct TransportOptions {
+    bool powerHeuristic = true;
+    float rouletteThreshold = 1.0F;   ///< 0: no Russian roulette
+    int maxDepth = 0;                 ///< surface vertices; 0: no limit
+    bool leaveCaustics = false;       ///< E X S+ L adds 0: light tracing carries it
+};
+
+struct TransportContext {
+    const Scene& scene;
+    TransportOptions options;
+    Maps maps;
+};
+
+/// What the first surface shows, for the auxiliary layers.
+struct FirstHit {
+    Rgb albedo{0.0F};
+    glm::vec3 normal{0.0F};
+    float depth = 0.0F;               ///< scene units; 0: nothing was hit
+    float kernelRadius = 0.0F;        ///< of the caustic look-up, scene units
+};
+
+/// A D vertex where the eye path ends: where the cache wants a record, a photon is useful.
+struct GatherPoint {
+    bool valid = false;
+    glm::vec3 position{0.0F}, normal{0.0F}, geometricNormal{0.0F};
+    float footprint = 0.0F;           ///< width of a pixel there, scene units
+    Rgb absorption{0.0F};             ///< of the medium in which the gather rays start
+    DiffuseLobe lobe;
+    float throughput = 0.0F;          ///< luminance of the path's throughput there
+    float directLuminance = 0.0F;
+};
+
+/// A ray that carries a footprint and the medium it is in.
+struct WalkRay {
+    Ray ray;
+    float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;
+    Rgb absorption{0.0F};             ///< of the medium, per scene unit
+    bool mediumKnown = false;         ///< false: taken from the first surface that is hit from inside
+};
+
+class Walk {
+public:
+    explicit Walk(const TransportContext& context) noexcept : context_(context) {}
+
+    /// Radiance along a camera ray, by class. `dimension`s of the sampler from 2 on are used, 8 a vertex.
+    [[nodiscard]] LayeredRadiance fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first = nullptr) noexcept;
+
+    /// Radiance that arrives at a D vertex along a gather ray, without direct light and without what the caustic map holds.
+    /// `distance` receives the length to the first surface (infinity: none).
+    [[nodiscard]] Rgb gather(const WalkRay& ray, Sampler& sampler, float& distance) noexcept;
+
+    /// Follows S and G lobes to the first D vertex.
+    [[nodiscard]] GatherPoint findGatherPoint(const WalkRay& ray, Sampler& sampler) noexcept;
+
+    [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
+    [[nodiscard]] std::uint64_t cacheMisses() const noexcept { return cacheMisses_; }
+
+private:
+    struct State;
+    struct Vertex;
+    void run(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept;
+    [[nodiscard]] bool step(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept;
+    void addEscaped(State& state) const noexcept;
+    void addEmitted(State& state, const SurfaceHit& hit) const noexcept;
+    [[nodiscard]] LobeKinds serveDiffuse(State& state, const Vertex& vertex, Sampler& sampler, FirstHit* first) noexcept;
+    void addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept;
+    [[nodiscard]] bool scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
+    [[nodiscard]] float misWeight(float mine, float other) const noexcept;
+
+    const TransportContext& context_;
+    std::uint64_t rays_ = 0, cacheMisses_ = 0;
+};
+
+/// The part of a shadow ray's way that is tested: it ends short of the light by the rounding of both ends.
+[[nodiscard]] inline float shadowLength(float distance) noexcept { return distance * (1.0F - 1e-5F) - 4e-5F; }
+
+}  // namespace pellucid

@@ -1,0 +1,247 @@
+#include "arguments.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include <CLI/CLI.hpp>
+
+#include <pellucid/base/error.h>
+#include <pellucid/base/nearest_name.h>
+
+#include "argument_values.h"
+
+namespace pellucid {
+namespace {
+
+constexpr std::array<std::string_view, 4> kImageExtensions{".exr", ".png", ".hdr", ".pfm"};
+constexpr std::array<std::string_view, 1> kMapExtensions{".png"};
+
+const std::map<std::string, Method> kMethods{
+    {"photon", Method::Photon}, {"path", Method::Path}, {"light", Method::Light}, {"reference", Method::Reference}};
+
+/// Option texts as typed, until all are known: a --config is read before the first --set, wherever they stand.
+struct TypedText {
+    std::string size, config, layers, crop, method = "photon";
+    std::vector<std::string> set, failAbove;
+};
+
+/// An option that may come again, each time with one value.
+CLI::Option* addRepeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
+                           const std::string& help) {
+    return app.add_option(name, values, help)->allow_extra_args(false)->take_all();
+}
+
+template <class Number>
+CLI::Option* addBudget(CLI::App& app, const std::string& name, std::optional<Number>& limit, const std::string& help) {
+    return app.add_option_function<Number>(
+        name,
+        [&limit, name](const Number& value) {
+            if (!(value > Number{0}) || !std::isfinite(static_cast<double>(value)))
+                throw Error(ErrorKind::Usage, "a budget must be above 0", name, "give a positive number");
+            limit = value;
+        },
+        help);
+}
+
+void addSceneFile(CLI::App& app, SceneArguments& common) {
+    app.add_option("scene", common.scene, "glTF scene (.gltf or .glb)")->required()->type_name("SCENE");
+    app.add_option("--env", common.environment,
+                   "light from infinity: equirectangular .hdr or .exr, or a constant R,G,B")
+        ->type_name("FILE|R,G,B");
+    app.add_option("--threads", common.threads, "worker threads; 0: all. The image does not depend on it")
+        ->check(CLI::Range(0, 1024))
+        ->type_name("N");
+    app.add_flag("--quiet", common.quiet, "print nothing but errors");
+}
+
+/// The options that mean the same for every command that renders.
+void addSceneOptions(CLI::App& app, SceneArguments& common, TypedText& typed) {
+    addSceneFile(app, common);
+    app.add_option("--method", typed.method,
+                   "photon (default): maps, cache and gather. path: unbiased path tracing. "
+                   "light: light tracing only. reference: path and light tracing by path class")
+        ->check(CLI::IsMember(kMethods))
+        ->type_name("NAME");
+    addBudget<double>(app, "--time", common.budget.seconds, "stop after so many seconds, loading included")
+        ->type_name("S");
+    addBudget<std::uint32_t>(app, "--spp", common.budget.samples, "stop after so many samples a pixel")->type_name("N");
+    addBudget<double>(app, "--error", common.budget.error, "stop at this relative error (default: 0.05, with a cap)")
+        ->type_name("E");
+    app.add_option("--size", typed.size, "pixels (default: 512 wide, the camera's aspect)")->type_name("WxH");
+    app.add_option("--camera", common.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
+    app.add_option("--seed", common.seed, "another seed makes other noise (default: 0)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N");
+    addRepeatable(app, "--set", typed.set, "a parameter by name; repeatable, after --config")->type_name("KEY=VALUE");
+    app.add_option("--config", typed.config, "parameters from a TOML file")->type_name("FILE.toml");
+}
+
+void resolve(SceneArguments& common, const TypedText& typed) {
+    common.method = kMethods.at(typed.method);
+    if (!typed.size.empty()) std::tie(common.width, common.height) = parseSize(typed.size);
+    if (!typed.config.empty()) loadSettings(common.settings, typed.config);
+    for (const std::string& text : typed.set) {
+        const auto [key, value] = parseAssignment("--set", text);
+        setParameter(common.settings, key, value);
+    }
+}
+
+/// Everything that CLI11 writes to, and the commands by name.
+struct Parser {
+    CLI::App app{
+        "Renders caustic-heavy scenes by photon maps, an irradiance cache and path tracing, and measures its "
+        "own error.",
+        "pellucid"};
+    TypedText typed;
+    RenderArguments render;
+    PlanArguments plan;
+    InfoArguments info;
+    DiffArguments diff;
+    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand;
+
+    Parser() {
+        app.require_subcommand(1);
+        app.set_version_flag("--version", "pellucid " PELLUCID_VERSION);
+        app.footer(
+            "Exit status: 0 done; 1 wrong use; 2 bad input; 3 could not finish or write; 4 a check or gate failed; "
+            "130 interrupted.\n`pellucid COMMAND --help` explains a command.");
+        renderCommand = addRender();
+        planCommand = addPlan();
+        infoCommand = addInfo();
+        diffCommand = addDiff();
+    }
+
+    CLI::App* addRender() {
+        CLI::App* command = app.add_subcommand("render", "render a scene into image files");
+        addSceneOptions(*command, render.common, typed);
+        addRepeatable(*command, "-o,--output", render.outputs, "image to write; repeatable")
+            ->required()
+            ->type_name("OUT.exr|.png|.hdr|.pfm");
+        command->add_option("--exposure", render.exposure, "stops of exposure, for PNG only")->type_name("EV");
+        command
+            ->add_option("--layers", typed.layers,
+                         "more layers in the EXR: albedo, normal, depth, variance, records, "
+                         "radius, all or none; emission, direct, caustic and indirect are always there")
+            ->type_name("A,B,...");
+        command->add_option("--record", render.record, "what was done, as JSON")->type_name("FILE.json");
+        CLI::Option* checkpoint =
+            command->add_option("--checkpoint", render.checkpoint, "state to go on from")->type_name("FILE");
+        command->add_flag("--resume", render.resume, "go on from the checkpoint")->needs(checkpoint);
+        command->footer(
+            "Examples:\n  pellucid render scene.glb -o out.exr -o out.png --time 30\n"
+            "  pellucid render scene.glb -o ref.exr --method reference --spp 4096 --checkpoint ref.state\n"
+            "  pellucid render scene.glb -o out.exr --set cache.error=0.2 --layers variance,albedo");
+        return command;
+    }
+
+    CLI::App* addPlan() {
+        CLI::App* command = app.add_subcommand("plan", "what a render will do and leave out, why, and at what cost");
+        addSceneOptions(*command, plan.common, typed);
+        command->add_flag("--json", plan.json, "for programs");
+        command->footer("Examples:\n  pellucid plan scene.glb\n  pellucid plan scene.glb --method path --json");
+        return command;
+    }
+
+    CLI::App* addInfo() {
+        CLI::App* command = app.add_subcommand("info", "what a scene holds");
+        addSceneFile(*command, info.common);
+        command->add_flag("--json", info.json, "for programs");
+        command->footer("Examples:\n  pellucid info scene.glb\n  pellucid info scene.glb --json");
+        return command;
+    }
+
+    CLI::App* addDiff() {
+        CLI::App* command = app.add_subcommand("diff", "measure images against a reference");
+        command
+            ->add_option("reference", diff.reference,
+                         "image to compare with; pixels where its channel mask.Y is 0 do "
+                         "not count")
+            ->required()
+            ->type_name("REF.exr");
+        command->add_option("images", diff.images, "images to measure")->required()->type_name("IMG.exr ...");
+        command->add_flag("--json", diff.json, "for programs");
+        command->add_option("--crop", typed.crop, "only this box; x1 and y1 lie one past the last pixel")
+            ->type_name("x0,y0,x1,y1");
+        command
+            ->add_option("--map", diff.map,
+                         "false-colour map of HDR-FLIP; OUT-1.png, OUT-2.png, ... for several images")
+            ->type_name("OUT.png");
+        addRepeatable(*command, "--fail-above", typed.failAbove,
+                      "exit with 4 when a metric of an image is above; repeatable. "
+                      "rmse, relmse, relmse_trimmed, smape, flip, bias (either sign), nonfinite")
+            ->type_name("METRIC=VALUE");
+        command->add_flag("--exposure-invariant", diff.exposureInvariant, "scale images to the reference's mean first");
+        command->footer(
+            "Examples:\n  pellucid diff ref.exr a.exr b.exr\n"
+            "  pellucid diff ref.exr a.exr --crop 285,440,490,500 --map error.png\n"
+            "  pellucid diff ref.exr a.exr --json --fail-above relmse=0.01 --fail-above nonfinite=0");
+        return command;
+    }
+
+    [[nodiscard]] std::string nameOfUsed() const {
+        const std::vector<CLI::App*> used = app.get_subcommands();
+        return used.empty() ? "" : used.front()->get_name();
+    }
+
+    /// CLI11 would only say that a command is missing.
+    void requireKnownCommand(const std::string& word) const {
+        if (word.starts_with('-')) return;
+        std::vector<std::string> names;
+        for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+        if (std::ranges::find(names, word) != names.end()) return;
+        const std::vector<std::string_view> candidates(names.begin(), names.end());
+        throw Error(ErrorKind::Usage, "there is no command '" + word + "'", "command line",
+                    "the nearest name is '" + std::string(nearestName(word, candidates)) + "'; see `pellucid --help`");
+    }
+
+    [[nodiscard]] Arguments result() {
+        if (renderCommand->parsed()) {
+            for (const std::string& file : render.outputs) requireExtension("-o", file, kImageExtensions);
+            if (!typed.layers.empty()) render.layers = parseLayers(typed.layers);
+            resolve(render.common, typed);
+            return render;
+        }
+        if (planCommand->parsed()) {
+            resolve(plan.common, typed);
+            return plan;
+        }
+        if (infoCommand->parsed()) return info;
+        if (!typed.crop.empty()) diff.crop = parseCrop(typed.crop);
+        for (const std::string& text : typed.failAbove) diff.failAbove.push_back(parseGate(text));
+        if (!diff.map.empty()) requireExtension("--map", diff.map, kMapExtensions);
+        return diff;
+    }
+};
+
+/// One line for what CLI11 says.
+[[nodiscard]] std::string oneLine(std::string text) {
+    while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
+    for (char& c : text)
+        if (c == '\n') c = ' ';
+    return text;
+}
+
+}  // namespace
+
+Arguments parseArguments(int count, const char* const* values) {
+    Parser parser;
+    if (count > 1) parser.requireKnownCommand(values[1]);
+    try {
+        parser.app.parse(count, values);
+    } catch (const CLI::CallForHelp&) {
+        return TextArguments{parser.app.help()};
+    } catch (const CLI::CallForVersion& version) {
+        return TextArguments{std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        const std::string command = parser.nameOfUsed();
+        throw Error(ErrorKind::Usage, oneLine(error.what()), "command line",
+                    "see `pellucid " + command + (command.empty() ? "" : " ") + "--help`");
+    }
+    return parser.result();
+}
+
+}  // namespace pellucid

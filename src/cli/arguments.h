@@ -1,0 +1,70 @@
+/// The command line as values: parsed and checked for form, so that the commands see no text. The .cpp is the only one
+/// that sees CLI11.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pellucid/render/render.h>
+#include <pellucid/study/metrics.h>
+
+namespace pellucid {
+
+/// What means the same for every command that renders.
+struct SceneArguments {
+    std::string scene;
+    std::string environment;  ///< file or "R,G,B"; empty: none
+    std::string camera;
+    int width = 0, height = 0;
+    std::uint64_t seed = 0;
+    int threads = 0;
+    Method method = Method::Photon;
+    Budget budget;
+    Settings settings;  ///< defaults, then --config, then each --set in turn
+    bool quiet = false;
+};
+
+struct RenderArguments {
+    SceneArguments common;
+    std::vector<std::string> outputs;
+    float exposure = 0.0F;
+    std::vector<std::string> layers;
+    std::string record, checkpoint;
+    bool resume = false;
+};
+
+struct PlanArguments {
+    SceneArguments common;
+    bool json = false;
+};
+
+struct InfoArguments {
+    SceneArguments common;  ///< scene, environment and threads only
+    bool json = false;
+};
+
+struct DiffArguments {
+    std::string reference;
+    std::vector<std::string> images;
+    bool json = false;
+    std::optional<CropBox> crop;
+    std::string map;
+    std::vector<std::pair<std::string, double>> failAbove;
+    bool exposureInvariant = false;
+};
+
+/// --help and --version: text for standard output, and done.
+struct TextArguments {
+    std::string text;
+};
+
+using Arguments = std::variant<RenderArguments, PlanArguments, InfoArguments, DiffArguments, TextArguments>;
+
+/// Throws Error{Usage}; Error{BadInput} for what is wrong inside of the --config file.
+[[nodiscard]] Arguments parseArguments(int count, const char* const* values);
+
+}  // namespace pellucid

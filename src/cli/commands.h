@@ -1,0 +1,18 @@
+/// One function a command. Each returns the exit status and throws Error for everything else.
+#pragma once
+
+#include <chrono>
+
+#include "arguments.h"
+
+namespace pellucid {
+
+using Clock = std::chrono::steady_clock;
+
+/// `started`: when the program began; a budget of time counts from there.
+[[nodiscard]] int runRender(const RenderArguments& arguments, Clock::time_point started);
+[[nodiscard]] int runPlan(const PlanArguments& arguments);
+[[nodiscard]] int runInfo(const InfoArguments& arguments);
+[[nodiscard]] int runDiff(const DiffArguments& arguments);
+
+}  // namespace pellucid

@@ -1,0 +1,39 @@
+#include "scene_loading.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <pellucid/io/gltf.h>
+#include <pellucid/io/image_file.h>
+
+namespace pellucid {
+
+std::unique_ptr<Scene> loadScene(const SceneArguments& arguments, bool requireLight, const Workers& workers,
+                                 const LogSink& log) {
+    SceneDescription description = loadGltf(arguments.scene, log);
+    std::optional<EnvironmentDescription> environment;
+    if (!arguments.environment.empty()) environment = loadEnvironment(arguments.environment);
+    if (environment && environment->mendedTexels > 0)
+        logTo(log, LogLevel::Warning,
+              std::to_string(environment->mendedTexels) + " texels of " + arguments.environment +
+                  " are negative or not finite and count as black");
+    SceneOptions options;
+    options.lobeRules.castRoughness = static_cast<float>(arguments.settings.castRoughness);
+    options.requireLight = requireLight;
+    return std::make_unique<Scene>(std::move(description), std::move(environment), options, workers, log);
+}
+
+RenderRequest makeRequest(const SceneArguments& arguments) {
+    RenderRequest request;
+    request.method = arguments.method;
+    request.width = arguments.width;
+    request.height = arguments.height;
+    request.camera = arguments.camera;
+    request.seed = arguments.seed;
+    request.budget = arguments.budget;
+    request.settings = arguments.settings;
+    return request;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,20 @@
+/// From the arguments that all scene commands share to a Scene and a request.
+#pragma once
+
+#include <memory>
+
+#include <pellucid/base/log.h>
+#include <pellucid/base/parallel.h>
+#include <pellucid/render/render.h>
+#include <pellucid/scene/scene.h>
+
+#include "arguments.h"
+
+namespace pellucid {
+
+[[nodiscard]] std::unique_ptr<Scene> loadScene(const SceneArguments& arguments, bool requireLight,
+                                               const Workers& workers, const LogSink& log);
+
+[[nodiscard]] RenderRequest makeRequest(const SceneArguments& arguments);
+
+}  // namespace pellucid

@@ -1,0 +1,174 @@
+#include <pellucid/render/film.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace pellucid {
+
+namespace {
+
+constexpr const char* kLayerNames[kPathClasses] = {"emission", "direct", "caustic", "indirect"};
+
+[[nodiscard]] bool wants(const std::vector<std::string>& layers, const char* name) {
+    return std::any_of(layers.begin(), layers.end(), [name](const std::string& l) { return l == name || l == "all"; });
+}
+
+}  // namespace
+
+const std::vector<std::string>& auxiliaryLayers() noexcept {
+    static const std::vector<std::string> names{"albedo", "normal", "depth", "variance", "radius", "records"};
+    return names;
+}
+
+Film::Film(int width, int height)
+    : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+
+void Film::add(std::size_t pixel, std::uint32_t sample, const LayeredRadiance& radiance, const FirstHit& first) noexcept {
+    Pixel& p = pixels_[pixel];
+    const Rgb total = radiance.total();
+    if (!isFinite(total)) {
+        if (p.nonfinite++ == 0) p.firstNonfinite = sample;
+        return;
+    }
+    for (std::size_t l = 0; l < kPathClasses; ++l)
+        for (glm::length_t c = 0; c < 3; ++c) p.layer[l][c] += static_cast<double>(radiance.layer[l][c]);
+    if ((sample & 1U) != 0)
+        for (glm::length_t c = 0; c < 3; ++c) p.half[c] += static_cast<double>(total[c]);
+    const double y = static_cast<double>(luminance(total));
+    p.square += y * y;
+    for (glm::length_t c = 0; c < 3; ++c) {
+        p.albedo[c] += first.albedo[c];
+        p.normal[c] += first.normal[c];
+    }
+    p.depth += first.depth;
+    p.radius += first.kernelRadius;
+}
+
+void Film::addSplats(const std::vector<LightSplat>& splats, std::uint32_t pass) noexcept {
+    ++splatPasses_;
+    for (const LightSplat& s : splats) {
+        Pixel& p = pixels_[s.pixel];
+        if (!isFinite(s.radiance)) {
+            if (p.nonfinite++ == 0) p.firstNonfinite = pass;
+            continue;
+        }
+        for (glm::length_t c = 0; c < 3; ++c) {
+            p.splat[c] += static_cast<double>(s.radiance[c]);
+            if ((pass & 1U) != 0) p.splatHalf[c] += static_cast<double>(s.radiance[c]);
+        }
+    }
+}
+
+Rgb Film::mean(const Pixel& p, int layer) const noexcept {
+    Rgb value(0.0F);
+    const double n = std::max<std::uint32_t>(1, samples_);
+    for (glm::length_t c = 0; c < 3; ++c) {
+        double v = p.layer[layer][c] / n;
+        if (layer == static_cast<int>(PathClass::Caustic) && splatPasses_ > 0) v += p.splat[c] / splatPasses_;
+        value[c] = static_cast<float>(v);
+    }
+    return value;
+}
+
+Image Film::image(const std::vector<std::string>& layers) const {
+    std::vector<std::string> names{"R", "G", "B"};
+    const auto addRgb = [&names](const std::string& layer) {
+        for (const char* c : {".R", ".G", ".B"}) names.push_back(layer + c);
+    };
+    for (const char* l : kLayerNames) addRgb(l);
+    const bool albedo = wants(layers, "albedo"), normal = wants(layers, "normal"), depth = wants(layers, "depth"),
+               variance = wants(layers, "variance"), radius = wants(layers, "radius");
+    if (albedo) addRgb("albedo");
+    if (normal) names.insert(names.end(), {"normal.X", "normal.Y", "normal.Z"});
+    if (depth) names.emplace_back("depth.Z");
+    if (variance) names.emplace_back("variance.Y");
+    if (radius) names.emplace_back("radius.Y");
+    Image image(width_, height_, names);
+    const auto n = static_cast<float>(std::max<std::uint32_t>(1, samples_));
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const Pixel& p = pixels_[i];
+        Rgb total(0.0F);
+        int channel = 3;
+        for (int l = 0; l < kPathClasses; ++l, channel += 3) {
+            const Rgb value = mean(p, l);
+            image.setRgb(i, value, channel);
+            total += value;
+        }
+        image.setRgb(i, total);
+        if (albedo) image.setRgb(i, Rgb(p.albedo[0], p.albedo[1], p.albedo[2]) / n, channel), channel += 3;
+        if (normal) image.setRgb(i, Rgb(p.normal[0], p.normal[1], p.normal[2]) / n, channel), channel += 3;
+        if (depth) image.at(i, channel++) = p.depth / n;
+        if (variance) {
+            double y = 0.0;
+            for (const auto& l : p.layer) y += 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2];
+            const double count = std::max<std::uint32_t>(1, samples_), m = y / count;
+            // Of the mean: sample variance over the number of samples.
+            image.at(i, channel++) = static_cast<float>(std::max(0.0, p.square / count - m * m) / std::max(1.0, count - 1.0));
+        }
+        if (radius) image.at(i, channel++) = p.radius / n;
+    }
+    return image;
+}
+
+double Film::relativeError() const noexcept {
+    const double odd = samples_ / 2, even = samples_ - samples_ / 2;
+    if (odd < 1.0) return 1.0;
+    const double oddPasses = splatPasses_ / 2, evenPasses = splatPasses_ - splatPasses_ / 2;
+    double meanValue = 0.0;
+    std::vector<double> value(pixels_.size() * 3), difference(pixels_.size() * 3);
+    for (std::size_t i = 0; i < pixels_.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Pixel& p = pixels_[i];
+            double sum = 0.0;
+            for (const auto& l : p.layer) sum += l[c];
+            double a = p.half[c] / odd, b = (sum - p.half[c]) / even;
+            if (oddPasses >= 1.0) {
+                a += p.splatHalf[c] / oddPasses;
+                b += (p.splat[c] - p.splatHalf[c]) / evenPasses;
+            }
+            value[3 * i + c] = 0.5 * (a + b);
+            difference[3 * i + c] = 0.5 * (a - b);
+            meanValue += value[3 * i + c];
+        }
+    meanValue /= static_cast<double>(value.size());
+    const double floor = 0.01 * meanValue * meanValue;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        const double d2 = difference[i] * difference[i], v2 = value[i] * value[i] + floor;
+        if (v2 > 0.0) sum += d2 / v2;
+    }
+    return std::sqrt(sum / static_cast<double>(value.size()));
+}
+
+NonFinite Film::nonfinite() const noexcept {
+    NonFinite result;
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        if (pixels_[i].nonfinite == 0) continue;
+        if (result.count == 0) {
+            result.x = static_cast<int>(i % static_cast<std::size_t>(width_));
+            result.y = static_cast<int>(i / static_cast<std::size_t>(width_));
+            result.sample = pixels_[i].firstNonfinite;
+        }
+        result.count += pixels_[i].nonfinite;
+    }
+    return result;
+}
+
+std::vector<char> Film::save() const {
+    std::vector<char> bytes(2 * sizeof(std::uint32_t) + pixels_.size() * sizeof(Pixel));
+    std::memcpy(bytes.data(), &samples_, sizeof samples_);
+    std::memcpy(bytes.data() + sizeof samples_, &splatPasses_, sizeof splatPasses_);
+    std::memcpy(bytes.data() + 2 * sizeof samples_, static_cast<const void*>(pixels_.data()), pixels_.size() * sizeof(Pixel));
+    return bytes;
+}
+
+bool Film::restore(const std::vector<char>& bytes) {
+    if (bytes.size() != 2 * sizeof(std::uint32_t) + pixels_.size() * sizeof(Pixel)) return false;
+    std::memcpy(&samples_, bytes.data(), sizeof samples_);
+    std::memcpy(&splatPasses_, bytes.data() + sizeof samples_, sizeof splatPasses_);
+    std::memcpy(static_cast<void*>(pixels_.data()), bytes.data() + 2 * sizeof samples_, pixels_.size() * sizeof(Pixel));
+    return true;
+}
+
+}  // namespace pellucid

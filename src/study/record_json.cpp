@@ -1,0 +1,115 @@
+#include <pellucid/study/record_json.h>
+
+#include <nlohmann/json.hpp>
+
+#include <pellucid/study/text_table.h>
+
+namespace pellucid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[nodiscard]] Json settingsJson(const Settings& settings) {
+    Json json = Json::object();
+    for (const Parameter& row : parameters())
+        json[std::string(row.name)] =
+            std::visit([&settings](auto member) { return Json(settings.*member); }, row.member);
+    return json;
+}
+
+[[nodiscard]] Json decisionsJson(const std::vector<Decision>& decisions) {
+    Json json = Json::array();
+    for (const Decision& d : decisions)
+        json.push_back({{"name", d.name}, {"choice", d.choice}, {"reason", d.reason}, {"overridden", d.overridden}});
+    return json;
+}
+
+[[nodiscard]] Json stagesJson(const std::vector<StageRecord>& stages) {
+    Json json = Json::array();
+    for (const StageRecord& s : stages)
+        json.push_back({{"name", s.name},
+                        {"seconds", s.seconds},
+                        {"rays", s.rays},
+                        {"photons_emitted", s.photonsEmitted},
+                        {"photons_stored", s.photonsStored},
+                        {"records", s.records}});
+    return json;
+}
+
+/// What is known before as well as after a render.
+[[nodiscard]] Json commonJson(const RenderRecord& record, const RecordContext& context) {
+    Json json;
+    json["version"] = context.version;
+    json["scene"] = context.sceneFile;
+    json["scene_hash"] = context.sceneHash;
+    json["method"] = methodName(context.method);
+    json["width"] = context.width;
+    json["height"] = context.height;
+    json["seed"] = context.seed;
+    json["threads"] = record.threads;
+    json["settings"] = settingsJson(record.resolved);
+    json["plan"] = decisionsJson(record.decisions);
+    json["blind_spots"] = record.blindSpots;
+    json["stages"] = stagesJson(record.stages);
+    return json;
+}
+
+/// Text from files may hold any bytes: what is no UTF-8 is replaced.
+[[nodiscard]] std::string dump(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+[[nodiscard]] std::string countText(std::uint64_t count) { return count == 0 ? "-" : std::to_string(count); }
+
+}  // namespace
+
+std::string methodName(Method method) {
+    switch (method) {
+        case Method::Photon:
+            return "photon";
+        case Method::Path:
+            return "path";
+        case Method::Light:
+            return "light";
+        case Method::Reference:
+            return "reference";
+    }
+    return "photon";
+}
+
+std::string recordJson(const RenderRecord& record, const RecordContext& context) {
+    Json json = commonJson(record, context);
+    json["iterations"] = record.iterations;
+    json["samples_per_pixel"] = record.samplesPerPixel;
+    json["seconds"] = record.seconds;
+    json["peak_rss_bytes"] = context.peakRssBytes;
+    json["nonfinite"] = record.nonfinite.count;
+    if (record.nonfinite.count > 0)
+        json["nonfinite_first"] = {
+            {"x", record.nonfinite.x}, {"y", record.nonfinite.y}, {"sample", record.nonfinite.sample}};
+    json["error_estimate"] = record.errorEstimate;
+    json["interrupted"] = context.interrupted;
+    json["images"] = context.images;
+    return dump(json);
+}
+
+std::string planJson(const RenderRecord& plan, const RecordContext& context) { return dump(commonJson(plan, context)); }
+
+std::string planText(const RenderRecord& plan, const RecordContext& context) {
+    std::string text = context.sceneFile + ", " + std::to_string(context.width) + "x" + std::to_string(context.height) +
+                       ", method " + methodName(context.method) + "\n\n";
+    TextTable decisions({"decision", "choice", "reason"});
+    for (const Decision& d : plan.decisions)
+        decisions.add({d.name, d.overridden ? d.choice + " (set)" : d.choice, d.reason});
+    text += decisions.text();
+    if (!plan.stages.empty()) {
+        TextTable stages({"pass", "seconds, predicted", "photons", "records"});
+        for (const StageRecord& s : plan.stages)
+            stages.add({s.name, figure(s.seconds), countText(s.photonsEmitted), countText(s.records)});
+        text += "\n" + stages.text();
+    }
+    for (const std::string& blind : plan.blindSpots) text += "\nblind spot: " + blind;
+    return plan.blindSpots.empty() ? text : text + "\n";
+}
+
+}  // namespace pellucid

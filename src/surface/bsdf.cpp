@@ -1,0 +1,135 @@
+#include <pellucid/surface/bsdf.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include <pellucid/math/constants.h>
+#include <pellucid/surface/lobes.h>
+
+namespace pellucid {
+
+namespace {
+
+/// std::visit without the wrapping that keeps compilers from holding the results in registers.
+template <typename Function>
+inline void visitModel(const Lobe& lobe, const Function& function) noexcept {
+    if (const auto* diffuse = std::get_if<DiffuseLobe>(&lobe.model)) return function(*diffuse);
+    if (const auto* coat = std::get_if<CoatLobe>(&lobe.model)) return function(*coat);
+    if (const auto* conductor = std::get_if<ConductorLobe>(&lobe.model)) return function(*conductor);
+    return function(*std::get_if<DielectricLobe>(&lobe.model));
+}
+
+}  // namespace
+
+Bsdf::Bsdf(const Frame& frame, const glm::vec3& geometricNormal, bool backSide, bool bordersVolume) noexcept
+    : frame_(frame), geometricNormal_(geometricNormal), backSide_(backSide), bordersVolume_(bordersVolume) {}
+
+void Bsdf::add(const Lobe& lobe, const glm::vec3& wo) noexcept {
+    assert(count_ < kMaxLobes);
+    if (!(lobe.weight > 0.0F)) return;
+    if (const auto* diffuse = std::get_if<DiffuseLobe>(&lobe.model)) {
+        if (isBlack(diffuse->reflectance)) return;
+        diffuse_ = {lobe.weight * diffuse->reflectance, diffuse->a, diffuse->b};
+    }
+    Lobe& added = lobes_[static_cast<std::size_t>(count_++)];
+    added = lobe;
+    const glm::vec3 local = frame_.toLocal(wo);
+    visitModel(lobe, [&](const auto& model) { added.probability = lobe.weight * estimateAlbedo(model, local); });
+    kinds_ = kinds_ | lobe.kind;
+}
+
+float Bsdf::totalProbability(LobeKinds kinds) const noexcept {
+    float sum = 0.0F;
+    for (int i = 0; i < count_; ++i) {
+        const Lobe& lobe = lobes_[static_cast<std::size_t>(i)];
+        if ((lobe.kind & kinds) != kNoLobe) sum += lobe.probability;
+    }
+    return sum;
+}
+
+float Bsdf::albedo(LobeKinds kinds) const noexcept { return std::min(1.0F, totalProbability(kinds)); }
+
+/// Light must not pass where the shading normal says reflection and the geometry transmission. [Veach1997, sec. 5.3]
+bool Bsdf::sameSide(const glm::vec3& local, const glm::vec3& world) const noexcept {
+    return local.z * glm::dot(world, geometricNormal_) > 0.0F;
+}
+
+void Bsdf::evaluateLocal(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, TransportMode mode,
+                         BsdfValue& sum) const noexcept {
+    Rgb value{0.0F};
+    float pdf = 0.0F, total = 0.0F;
+    for (int i = 0; i < count_; ++i) {
+        const Lobe& lobe = lobes_[static_cast<std::size_t>(i)];
+        if ((lobe.kind & kinds) == kNoLobe) continue;
+        total += lobe.probability;
+        if (lobe.delta) continue;
+        visitModel(lobe, [&](const auto& model) {
+            const LobeValue part = evaluateLobe(model, wo, wi, mode);
+            value += lobe.weight * part.value;
+            pdf += lobe.probability * part.pdfSolidAngle;
+        });
+    }
+    sum.value = value;
+    sum.pdfSolidAngle = total > 0.0F ? pdf / total : 0.0F;
+}
+
+BsdfValue Bsdf::evaluate(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, TransportMode mode) const noexcept {
+    BsdfValue sum;
+    if ((kinds_ & kinds) == kNoLobe) return sum;
+    const glm::vec3 localO = frame_.toLocal(wo), localI = frame_.toLocal(wi);
+    if (localO.z > 0.0F && sameSide(localO, wo) && sameSide(localI, wi)) evaluateLocal(localO, localI, kinds, mode, sum);
+    return sum;
+}
+
+Rgb Bsdf::eval(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, TransportMode mode) const noexcept {
+    return evaluate(wo, wi, kinds, mode).value;
+}
+
+float Bsdf::pdf(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds) const noexcept {
+    return evaluate(wo, wi, kinds, TransportMode::Flux).pdfSolidAngle;
+}
+
+std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wo, float chooseLobe, const glm::vec2& u, LobeKinds kinds,
+                                       TransportMode mode) const noexcept {
+    const float total = totalProbability(kinds);
+    const glm::vec3 local = frame_.toLocal(wo);
+    if (!(total > 0.0F) || !(local.z > 0.0F) || !sameSide(local, wo)) return std::nullopt;
+
+    const Lobe* chosen = nullptr;
+    float below = 0.0F;  // probability of the lobes before the chosen one
+    const float target = chooseLobe * total;
+    for (int i = 0; i < count_; ++i) {
+        const Lobe& lobe = lobes_[static_cast<std::size_t>(i)];
+        if ((lobe.kind & kinds) == kNoLobe) continue;
+        if (chosen != nullptr) below += chosen->probability;
+        chosen = &lobe;
+        if (target < below + lobe.probability) break;
+    }
+    const float rest = std::clamp((target - below) / chosen->probability, 0.0F, kOneMinusEpsilon);
+    LobeDirection direction;
+    bool goesOn = false;
+    visitModel(*chosen, [&](const auto& model) { goesOn = sampleLobe(model, local, rest, u, mode, direction); });
+    if (!goesOn) return std::nullopt;
+
+    std::optional<BsdfSample> made(std::in_place);
+    BsdfSample& result = *made;
+    result.wi = frame_.toWorld(direction.wi);
+    if (!sameSide(direction.wi, result.wi)) return std::nullopt;
+    result.kind = chosen->kind;
+    result.delta = chosen->delta;
+    result.transmitted = direction.wi.z < 0.0F;
+    result.etaScale = direction.etaScale;
+    if (chosen->delta) {
+        result.weight = direction.weight * (chosen->weight * total / chosen->probability);
+        return made;
+    }
+    // The value at the direction as callers will see it, after its turn into the scene's space.
+    BsdfValue value;
+    evaluateLocal(local, frame_.toLocal(result.wi), kinds, mode, value);
+    if (!(value.pdfSolidAngle > 0.0F)) return std::nullopt;
+    result.pdfSolidAngle = value.pdfSolidAngle;
+    result.weight = value.value / value.pdfSolidAngle;
+    return made;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,64 @@
+#include <pellucid/transport/caustic_map.h>
+
+#include <pellucid/math/constants.h>
+
+#include "photon_tree.h"
+
+namespace pellucid {
+
+namespace {
+
+/// A photon belongs to the surface of the query when the normals agree and it lies near the tangent plane.
+constexpr float kMinNormalCosine = 0.5F;
+constexpr float kMaxPlaneDistance = 0.3F;  ///< of the radius
+
+/// Sums the kernel while nanoflann visits; never full, so that every photon within the radius is seen.
+struct KernelSum {
+    const PhotonList& photons;
+    glm::vec3 point, normal, shadingNormal;
+    const DiffuseLobe& lobe;
+    float radius2;
+    Rgb sum{0.0F};
+
+    void init() noexcept {}
+    [[nodiscard]] std::size_t size() const noexcept { return 0; }
+    [[nodiscard]] bool full() const noexcept { return true; }
+    [[nodiscard]] float worstDist() const noexcept { return radius2; }
+    bool addPoint(float distance2, std::uint32_t index) noexcept {
+        if (distance2 >= radius2) return true;
+        const Photon& p = photons[index];
+        if (glm::dot(p.normal, normal) < kMinNormalCosine) return true;
+        const float height = glm::dot(p.position - point, normal);
+        if (height * height > kMaxPlaneDistance * kMaxPlaneDistance * radius2) return true;
+        float weight = 1.0F - distance2 / radius2;
+        if (lobe.b != 0.0F) weight *= lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal)));
+        sum += p.flux * weight;
+        return true;
+    }
+};
+
+}  // namespace
+
+struct CausticMap::Impl {
+    PhotonList photons;
+    PointTree<Photon> tree;
+    explicit Impl(PhotonList list) : photons(std::move(list)), tree(photons) {}
+};
+
+CausticMap::CausticMap(PhotonList photons) {
+    sortAlongMortonCurve(photons);
+    impl_ = std::make_unique<Impl>(std::move(photons));
+}
+CausticMap::~CausticMap() = default;
+CausticMap::CausticMap(CausticMap&&) noexcept = default;
+
+Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
+                           const DiffuseLobe& lobe, float radius) const noexcept {
+    KernelSum result{impl_->photons, point, geometricNormal, shadingNormal, lobe, radius * radius};
+    impl_->tree.search(point, result);
+    return result.sum * (2.0F / (kPi * radius * radius));
+}
+
+std::size_t CausticMap::size() const noexcept { return impl_->photons.size(); }
+
+}  // namespace pellucid

@@ -1,0 +1,150 @@
+#include <pellucid/transport/emission_guide.h>
+
+#include <algorithm>
+
+namespace pellucid {
+
+namespace {
+
+constexpr float kUniformShare = 0.1F;    ///< of the numbers, and of the choice of light (by power)
+constexpr std::size_t kMinItems = 24;    ///< a cell with fewer is not split
+constexpr int kMaxDepth = 32;
+constexpr int kBins = 8;
+/// chi^2 with 7 degrees of freedom beyond which a cell is not uniform along an axis (p = 0.003).
+constexpr float kSplitChiSquare = 21.6F;
+
+/// Chi^2 of the items' positions along `axis` against uniform, in kBins bins.
+[[nodiscard]] float nonUniformity(const std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end, std::size_t axis,
+                                  float lower, float upper) {
+    std::array<float, kBins> counts{};
+    for (std::size_t i = begin; i < end; ++i) {
+        const float t = (items[i].u[axis] - lower) / (upper - lower);
+        ++counts[static_cast<std::size_t>(std::clamp(static_cast<int>(t * kBins), 0, kBins - 1))];
+    }
+    const float expected = static_cast<float>(end - begin) / kBins;
+    float chi = 0.0F;
+    for (const float c : counts) chi += (c - expected) * (c - expected) / expected;
+    return chi;
+}
+
+}  // namespace
+
+EmissionGuide::EmissionGuide(const Lights& lights, const std::vector<UsefulEmission>& useful) : lights_(lights) {
+    const std::size_t count = lights.count();
+    std::vector<double> useful1(count, 0.0);
+    std::vector<std::vector<UsefulEmission>> byLight(count);
+    double total = 0.0;
+    for (const UsefulEmission& e : useful) {
+        byLight[e.light].push_back(e);
+        useful1[e.light] += static_cast<double>(e.weight);
+        total += static_cast<double>(e.weight);
+    }
+    const double power = lights.totalPower();
+    const double unguided = total > 0.0 ? static_cast<double>(kUniformShare) : 1.0;
+    double sum = 0.0;
+    for (std::uint32_t l = 0; l < count; ++l) {
+        sum += unguided * (power > 0.0 ? lights.power(l) / power : 1.0 / static_cast<double>(count));
+        if (total > 0.0) sum += (1.0 - unguided) * useful1[l] / total;
+        lightCdf_.push_back(sum);
+    }
+    for (double& c : lightCdf_) c /= sum;
+    trees_.resize(count);
+    if (total > 0.0) uniformShare_ = kUniformShare;
+    for (std::size_t l = 0; l < count; ++l) {
+        if (byLight[l].size() < kMinItems) continue;
+        trees_[l].nodes.emplace_back();
+        build(trees_[l], 0, byLight[l], 0, byLight[l].size(), {0, 0, 0, 0}, {1, 1, 1, 1}, 0);
+    }
+}
+
+void EmissionGuide::build(Tree& tree, std::uint32_t node, std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end,
+                          std::array<float, 4> lower, std::array<float, 4> upper, int depth) {
+    const std::size_t count = end - begin;
+    if (count < kMinItems || depth >= kMaxDepth) return;
+    std::size_t axis = 0;
+    float worst = 0.0F;
+    for (std::size_t a = 0; a < 4; ++a) {
+        const float chi = nonUniformity(items, begin, end, a, lower[a], upper[a]);
+        if (chi > worst) worst = chi, axis = a;
+    }
+    if (worst < kSplitChiSquare) return;
+    const float middle = 0.5F * (lower[axis] + upper[axis]);
+    const auto first = items.begin() + static_cast<std::ptrdiff_t>(begin), last = items.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto split = std::stable_partition(first, last, [&](const UsefulEmission& e) { return e.u[axis] < middle; });
+    const auto cut = begin + static_cast<std::size_t>(split - first);
+    double leftMass = 0.0, mass = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+        mass += static_cast<double>(items[i].weight);
+        if (i < cut) leftMass += static_cast<double>(items[i].weight);
+    }
+    // One item of mean weight on each side: an empty half keeps a share that falls with the evidence.
+    const double prior = mass / static_cast<double>(count);
+    tree.nodes[node].axis = static_cast<std::int32_t>(axis);
+    tree.nodes[node].left = static_cast<std::uint32_t>(tree.nodes.size());
+    tree.nodes[node].leftShare = static_cast<float>((leftMass + prior) / (mass + 2.0 * prior));
+    const std::uint32_t left = tree.nodes[node].left;
+    tree.nodes.emplace_back();
+    tree.nodes.emplace_back();
+    auto middleUpper = upper, middleLower = lower;
+    middleUpper[axis] = middleLower[axis] = middle;
+    build(tree, left, items, begin, cut, lower, middleUpper, depth + 1);
+    build(tree, left + 1, items, cut, end, middleLower, upper, depth + 1);
+}
+
+float EmissionGuide::density(const Tree& tree, const std::array<float, 4>& u) noexcept {
+    if (tree.nodes.empty()) return 1.0F;
+    std::array<float, 4> local = u;
+    float pdf = 1.0F;
+    const Node* node = tree.nodes.data();
+    while (node->axis >= 0) {
+        float& t = local[static_cast<std::size_t>(node->axis)];
+        const bool left = t < 0.5F;
+        pdf *= 2.0F * (left ? node->leftShare : 1.0F - node->leftShare);
+        t = left ? 2.0F * t : 2.0F * t - 1.0F;
+        node = &tree.nodes[node->left + (left ? 0U : 1U)];
+    }
+    return pdf;
+}
+
+/// Maps uniform numbers to the tree's density by inversion at each split, which keeps their stratification.
+void EmissionGuide::warp(const Tree& tree, std::array<float, 4>& u) noexcept {
+    if (tree.nodes.empty()) return;
+    std::array<float, 4> lower{}, size{1.0F, 1.0F, 1.0F, 1.0F};
+    const Node* node = tree.nodes.data();
+    while (node->axis >= 0) {
+        const auto axis = static_cast<std::size_t>(node->axis);
+        const bool left = u[axis] < node->leftShare;
+        u[axis] = left ? u[axis] / node->leftShare : (u[axis] - node->leftShare) / (1.0F - node->leftShare);
+        size[axis] *= 0.5F;
+        if (!left) lower[axis] += size[axis];
+        node = &tree.nodes[node->left + (left ? 0U : 1U)];
+    }
+    for (std::size_t a = 0; a < 4; ++a) u[a] = std::min(lower[a] + u[a] * size[a], 0x1.fffffep-1F);
+}
+
+std::optional<GuidedEmission> EmissionGuide::sample(Sampler& sampler) const noexcept {
+    const auto chosen = static_cast<double>(sampler.next1D());
+    const glm::vec2 position = sampler.next2D(), direction = sampler.next2D();
+    const bool guided = sampler.next1D() >= uniformShare_;
+    const auto it = std::upper_bound(lightCdf_.begin(), lightCdf_.end(), chosen);
+    const auto light = static_cast<std::uint32_t>(std::min<std::ptrdiff_t>(it - lightCdf_.begin(), static_cast<std::ptrdiff_t>(lightCdf_.size()) - 1));
+    const double pmf = lightCdf_[light] - (light > 0 ? lightCdf_[light - 1] : 0.0);
+    std::array<float, 4> u{position.x, position.y, direction.x, direction.y};
+    const Tree& tree = trees_[light];
+    if (guided) warp(tree, u);
+    const float pdf = uniformShare_ + (1.0F - uniformShare_) * density(tree, u);
+    auto emission = lights_.sampleEmissionFrom(light, {u[0], u[1]}, {u[2], u[3]});
+    if (!emission || !(pmf > 0.0)) return std::nullopt;
+    const auto scale = static_cast<float>(1.0 / (pmf * static_cast<double>(pdf)));
+    emission->flux *= scale;
+    emission->pmfLight = static_cast<float>(pmf);
+    return GuidedEmission{*emission, {light, u, scale}};
+}
+
+std::size_t EmissionGuide::cells() const noexcept {
+    std::size_t sum = 0;
+    for (const Tree& t : trees_) sum += (t.nodes.size() + 1) / 2;
+    return sum;
+}
+
+}  // namespace pellucid

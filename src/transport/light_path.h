@@ -1,0 +1,95 @@
+/// One light path, vertex by vertex: shared by the photon passes and light tracing.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <pellucid/base/parallel.h>
+#include <pellucid/math/sampler.h>
+#include <pellucid/scene/scene.h>
+
+namespace pellucid::light_path {
+
+inline constexpr std::size_t kPathsPerChunk = 2048;
+inline constexpr std::uint64_t kEmissionDimensions = 5, kDimensionsPerVertex = 4;
+inline constexpr int kCertainVertices = 64;
+inline constexpr float kSurvivalBeyond = 0.995F;
+/// Light that grazes the true surface this flatly is dropped: its correction for shading normals would explode.
+inline constexpr float kMinGeometricCosine = 0.01F;
+
+struct LightPath {
+    Ray ray;
+    Rgb flux{0.0F};
+    Rgb absorption{0.0F};
+    bool mediumKnown = false;
+    int vertices = 0;
+};
+
+struct Arrival {
+    SurfaceHit hit;
+    Bsdf bsdf;
+    glm::vec3 wi;       ///< back along the ray
+    float shading;      ///< |wi.ns| / |wi.ng|: flux density on the true surface to irradiance of the shaded one
+};
+
+/// The next vertex of a light path, with absorption applied. Empty: it escaped or grazes.
+[[nodiscard]] inline std::optional<Arrival> arrive(const Scene& scene, LightPath& path, Sampler& sampler) noexcept {
+    sampler.setDimension(kEmissionDimensions + kDimensionsPerVertex * static_cast<std::uint64_t>(path.vertices));
+    const auto hit = scene.intersect(path.ray, sampler.next1D());
+    if (!hit) return std::nullopt;
+    ++path.vertices;
+    const glm::vec3 wi = -path.ray.direction;
+    const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wi);
+    if (!path.mediumKnown) {
+        if (bsdf.backSide() && bsdf.bordersVolume()) path.absorption = scene.surfaces().materials()[hit->point.material].absorption;
+        path.mediumKnown = true;
+    }
+    if (!isBlack(path.absorption)) path.flux *= glm::exp(-path.absorption * hit->distance);
+    const float geometric = std::fabs(glm::dot(wi, bsdf.geometricNormal()));
+    if (geometric < kMinGeometricCosine) return std::nullopt;
+    return Arrival{*hit, bsdf, wi, std::fabs(glm::dot(wi, bsdf.shadingNormal())) / geometric};
+}
+
+/// Scatters flux among `kinds`; the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]
+[[nodiscard]] inline bool scatter(const Scene& scene, LightPath& path, const Arrival& a, LobeKinds kinds, Sampler& sampler) noexcept {
+    const float chooseLobe = sampler.next1D();
+    const auto sample = a.bsdf.sample(a.wi, chooseLobe, sampler.next2D(), kinds, TransportMode::Flux);
+    if (!sample) return false;
+    const float shadingOut = std::fabs(glm::dot(sample->wi, a.bsdf.shadingNormal()));
+    const float geometricOut = std::fabs(glm::dot(sample->wi, a.bsdf.geometricNormal()));
+    if (!(shadingOut > 0.0F)) return false;
+    const float before = maxComponent(path.flux);
+    path.flux *= sample->weight * (a.shading * geometricOut / shadingOut);
+    const float after = maxComponent(path.flux);
+    float survive = before > 0.0F ? std::min(1.0F, after / before) : 0.0F;
+    if (path.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
+    if (!(survive > 0.0F) || sampler.next1D() >= survive) return false;
+    path.flux /= survive;
+    const bool behind = glm::dot(sample->wi, a.bsdf.geometricNormal()) < 0.0F;
+    path.ray = Ray{offsetOrigin(a.hit.point.position, behind ? -a.bsdf.geometricNormal() : a.bsdf.geometricNormal()), sample->wi,
+                   std::numeric_limits<float>::infinity()};
+    if (sample->transmitted && a.bsdf.bordersVolume())
+        path.absorption = a.bsdf.backSide() ? Rgb(0.0F) : scene.surfaces().materials()[a.hit.point.material].absorption;
+    return true;
+}
+
+/// Runs trace(path index, chunk result) over all paths and appends the chunks in order.
+template <class Chunk>
+[[nodiscard]] std::vector<Chunk> inChunks(std::uint32_t paths, const Workers& workers,
+                                          const std::function<void(std::uint32_t, Chunk&)>& trace) {
+    std::vector<Chunk> chunks((paths + kPathsPerChunk - 1) / kPathsPerChunk);
+    workers.forRanges(paths, kPathsPerChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) trace(static_cast<std::uint32_t>(i), chunks[i / kPathsPerChunk]);
+    });
+    return chunks;
+}
+
+template <class Item>
+void append(std::vector<Item>& to, const std::vector<Item>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace pellucid::light_path

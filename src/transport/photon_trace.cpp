@@ -1,0 +1,91 @@
+#include <pellucid/transport/photon_trace.h>
+
+#include "light_path.h"
+
+namespace pellucid {
+
+using namespace light_path;
+
+namespace {
+
+[[nodiscard]] bool receives(const Arrival& a) noexcept { return (a.bsdf.kinds() & kDiffuse) != kNoLobe; }
+
+[[nodiscard]] Photon photonOf(const Arrival& a, const Rgb& flux, float perPath) noexcept {
+    return {a.hit.point.position, a.wi, a.bsdf.geometricNormal(), flux * (a.shading * perPath)};
+}
+
+[[nodiscard]] bool usable(const Photon& p) noexcept { return isFinite(p.flux) && !isBlack(p.flux); }
+
+}  // namespace
+
+CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, const PhotonPassKey& key, const VisibleCells* visible,
+                                const Workers& workers) {
+    const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
+    const auto chunks = inChunks<CausticPass>(key.paths, workers, [&](std::uint32_t index, CausticPass& out) {
+        Sampler sampler(key.seed, key.pass, index);
+        const auto start = guide.sample(sampler);
+        if (!start) return;
+        LightPath path{start->emission.ray, start->emission.flux};
+        const float emitted = luminance(path.flux);
+        bool useful = false;
+        Rgb arrived(0.0F);
+        for (;;) {
+            ++out.rays;
+            const auto a = arrive(scene, path, sampler);
+            if (!a) break;
+            if (path.vertices > 1 && receives(*a)) {
+                const Photon photon = photonOf(*a, path.flux, perPath);
+                if (usable(photon) && (visible == nullptr || visible->seen(photon.position))) {
+                    out.photons.push_back(photon);
+                    arrived += path.flux;
+                    useful = true;
+                }
+            }
+            if (!scatter(scene, path, *a, kSpecular, sampler)) break;
+        }
+        if (useful && emitted > 0.0F) {
+            UsefulEmission origin = start->origin;
+
+            origin.weight = luminance(arrived);
+            out.useful.push_back(origin);
+        }
+    });
+    CausticPass pass;
+    pass.emitted = key.paths;
+    for (const CausticPass& c : chunks) {
+        append(pass.photons, c.photons);
+        append(pass.useful, c.useful);
+        pass.rays += c.rays;
+    }
+    return pass;
+}
+
+GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, const Workers& workers) {
+    const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
+    const EmissionGuide unguided(scene.lights(), {});
+    const auto chunks = inChunks<GlobalPass>(key.paths, workers, [&](std::uint32_t index, GlobalPass& out) {
+        Sampler sampler(key.seed, key.pass, index);
+        const auto start = unguided.sample(sampler);
+        if (!start) return;
+        LightPath path{start->emission.ray, start->emission.flux};
+        for (;;) {
+            ++out.rays;
+            const auto a = arrive(scene, path, sampler);
+            if (!a) break;
+            if (receives(*a)) {
+                const Photon photon = photonOf(*a, path.flux, perPath);
+                if (usable(photon)) out.photons.push_back({photon, a->bsdf.shadingNormal(), a->bsdf.diffuse(), path.vertices == 1});
+            }
+            if (!scatter(scene, path, *a, kAllLobes, sampler)) break;
+        }
+    });
+    GlobalPass pass;
+    pass.emitted = key.paths;
+    for (const GlobalPass& c : chunks) {
+        append(pass.photons, c.photons);
+        pass.rays += c.rays;
+    }
+    return pass;
+}
+
+}  // namespace pellucid

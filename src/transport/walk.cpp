@@ -1,0 +1,326 @@
+#include <pellucid/transport/walk.h>
+
+#include <cmath>
+
+#include <pellucid/math/constants.h>
+#include <pellucid/transport/caustic_map.h>
+#include <pellucid/transport/irradiance_cache.h>
+#include <pellucid/transport/radiance_map.h>
+
+namespace pellucid {
+
+namespace {
+
+/// Roulette never keeps a path for certain beyond this many vertices, so that closed rooms of albedo 1 end.
+constexpr int kCertainVertices = 64;
+constexpr float kSurvivalBeyond = 0.995F;
+/// Sampler dimensions: 0 film, 1 lens, then this many a vertex.
+constexpr std::uint64_t kFirstDimension = 2, kDimensionsPerVertex = 8;
+enum VertexDimension : std::uint64_t { kCoin, kLightChoice, kLightPoint, kLobeChoice, kLobePoint, kKindChoice, kRoulette, kCorner };
+/// Near a corner the map's blur would show: a gather ray shorter than u x this many look-up radii goes on instead.
+constexpr float kCornerRadii = 8.0F;
+
+[[nodiscard]] Rgb transmittance(const Rgb& absorption, float distance) noexcept {
+    return {std::exp(-absorption.r * distance), std::exp(-absorption.g * distance), std::exp(-absorption.b * distance)};
+}
+
+}  // namespace
+
+/// How light behind the last D vertex is carried.
+enum class Behind : std::uint8_t {
+    NoReceiver,    ///< no D vertex yet
+    CausticMapped, ///< the caustic map holds what comes over S alone
+    PathTraced     ///< everything is path traced
+};
+
+struct Walk::State {
+    WalkRay ray;
+    LayeredRadiance radiance;
+    Rgb throughput{1.0F};
+    EyeLedger ledger;
+    Behind behind = Behind::NoReceiver;
+    bool chainEmpty = true, chainSpecular = true;  ///< since the last D vertex (or the eye)
+    bool lampSampled = false;        ///< the last vertex did next-event estimation for the lobe that was sampled
+    bool skipDirect = false;         ///< a lamp met at once is counted elsewhere
+    float pdfSolidAngle = 0.0F;      ///< of the direction, over the sampled lobes
+    glm::vec3 lightPoint{0.0F}, lightNormal{0.0F};  ///< where next-event estimation stood
+    float etaScale = 1.0F, pathLength = 0.0F;
+    int vertices = 0;
+    bool gathering = false;          ///< behind the first D vertex: the global map may answer
+    bool straight = true;            ///< the eye saw its first X vertex without any S before it
+
+    /// Whether a lamp that is met now belongs to path tracing.
+    [[nodiscard]] bool lampCounts(bool leaveCaustics) const noexcept {
+        if (leaveCaustics && straight && ledger.atLight() == PathClass::Caustic) return false;
+        if (chainEmpty) return !skipDirect;
+        return behind != Behind::CausticMapped || !chainSpecular;
+    }
+};
+
+struct Walk::Vertex {
+    const SurfaceHit& hit;
+    const Bsdf& bsdf;
+    glm::vec3 wo;
+    float footprint;
+    glm::vec3 lightNormal;           ///< horizon for light sampling; zero where light may come from behind
+};
+
+float Walk::misWeight(float mine, float other) const noexcept {
+    if (!(mine > 0.0F)) return 0.0F;
+    if (!std::isfinite(mine)) return 1.0F;
+    const float ratio = other / mine;
+    return context_.options.powerHeuristic ? 1.0F / (1.0F + ratio * ratio) : 1.0F / (1.0F + ratio);
+}
+
+void Walk::addEscaped(State& state) const noexcept {
+    const Environment* environment = context_.scene.environment();
+    if (environment == nullptr || !state.lampCounts(context_.options.leaveCaustics)) return;
+    float weight = 1.0F;
+    if (state.lampSampled)
+        weight = misWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
+    state.radiance[state.ledger.atLight()] += state.throughput * environment->radiance(state.ray.ray.direction) * weight;
+}
+
+void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
+    if (!state.lampCounts(context_.options.leaveCaustics)) return;
+    const Rgb emitted = context_.scene.surfaces().emittedRadiance(hit.point, -state.ray.ray.direction);
+    if (isBlack(emitted)) return;
+    float weight = 1.0F;
+    if (state.lampSampled)
+        weight = misWeight(state.pdfSolidAngle,
+                           context_.scene.lights().pdfTriangle(state.lightPoint, state.lightNormal, hit.point.geometry, hit.point.primitive,
+                                                               state.ray.ray.direction, hit.distance));
+    state.radiance[state.ledger.atLight()] += state.throughput * emitted * weight;
+}
+
+/// Hands the D lobe to the maps. Returns kDiffuse when path tracing has to carry it on.
+LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sampler, FirstHit* first) noexcept {
+    const Maps& maps = context_.maps;
+    const DiffuseLobe& lobe = vertex.bsdf.diffuse();
+    const glm::vec3& normal = vertex.bsdf.shadingNormal();
+    const glm::vec3& position = vertex.hit.point.position;
+    const Rgb outgoing = lobe.reflectance * (kInvPi * lobe.transmittance(std::min(1.0F, std::fabs(glm::dot(vertex.wo, normal)))));
+    if (state.gathering) {
+        if (maps.global != nullptr) {
+            const auto found = maps.global->find(position, vertex.bsdf.geometricNormal());
+            const float u = sampler.next1D();
+            const bool nearCorner = found && state.chainEmpty && vertex.hit.distance < u * kCornerRadii * found->radius;
+            if (found && !nearCorner) {
+                state.radiance[PathClass::Indirect] += state.throughput * outgoing * found->irradiance;
+                return kNoLobe;
+            }
+        }
+        return kDiffuse;
+    }
+    if (maps.caustic != nullptr) {
+        const float radius = glm::clamp(maps.causticFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
+        if (first != nullptr && state.vertices == 1) first->kernelRadius = radius;
+        const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius);
+        state.radiance[state.ledger.atLightAfter(false) == PathClass::Direct ? PathClass::Caustic : PathClass::Indirect] +=
+            state.throughput * outgoing * irradiance;
+    }
+    if (maps.cache != nullptr) {
+        if (const auto cached = maps.cache->lookup(position, normal)) {
+            state.radiance[PathClass::Indirect] += state.throughput * outgoing * cached->through(lobe);
+            return kNoLobe;
+        }
+        ++cacheMisses_;  // gathers once: the walk simply goes on
+    }
+    return kDiffuse;
+}
+
+/// Next-event estimation for `kinds`; those that are also `sampled` share the class with sampling by MIS.
+void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept {
+    const float choice = sampler.next1D();
+    const glm::vec2 u = sampler.next2D();
+    const glm::vec3& position = vertex.hit.point.position;
+    const auto light = context_.scene.lights().sample(position, vertex.lightNormal, choice, u);
+    if (!light || !(light->pdfSolidAngle > 0.0F)) return;
+    const float pdfSampled = light->delta ? 0.0F : vertex.bsdf.pdf(vertex.wo, light->wi, sampled);
+    const float shared = misWeight(light->pdfSolidAngle, pdfSampled);
+    LayeredRadiance sum;
+    for (const LobeKinds kind : {kSpecular, kGlossy, kDiffuse}) {
+        if ((kinds & kind) == kNoLobe) continue;
+        const Rgb f = vertex.bsdf.eval(vertex.wo, light->wi, kind, TransportMode::Radiance);
+        if (isBlack(f)) continue;
+        const float weight = (sampled & kind) != kNoLobe ? shared : 1.0F;
+        sum[state.ledger.atLightAfter(kind == kSpecular)] += f * weight;
+    }
+    const Rgb total = sum.total();
+    if (isBlack(total)) return;
+    const glm::vec3& ng = vertex.bsdf.geometricNormal();
+    Ray shadow;
+    shadow.origin = offsetOrigin(position, glm::dot(light->wi, ng) >= 0.0F ? ng : -ng);
+    shadow.direction = light->wi;
+    shadow.tMax = shadowLength(light->distance);
+    ++rays_;
+    const float visible = shadow.tMax > 0.0F ? context_.scene.visibility(shadow) : 1.0F;
+    if (visible <= 0.0F) return;
+    Rgb arriving = light->radiance * (visible / light->pdfSolidAngle);
+    if (!isBlack(state.ray.absorption)) arriving *= transmittance(state.ray.absorption, std::min(light->distance, 1e6F));
+    for (int c = 0; c < kPathClasses; ++c) {
+        const auto index = static_cast<std::size_t>(c);
+        state.radiance.layer[index] += state.throughput * arriving * sum.layer[index];
+    }
+}
+
+/// Samples the next direction among `sampled` lobes, with roulette. False: the walk ends.
+bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
+    const float chooseLobe = sampler.next1D();
+    const glm::vec2 u = sampler.next2D();
+    const float chooseKind = sampler.next1D();
+    const auto sample = vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance);
+    if (!sample) return false;
+    LobeKinds kind = sample->kind;
+    Rgb weight = sample->weight;
+    const LobeKinds present = vertex.bsdf.kinds() & sampled;
+    if (!sample->delta && (present & (present - 1)) != 0) {
+        // Several kinds could have made this direction: choose one by its share of f, so that every class gets its own energy.
+        Rgb f[3];
+        float total = 0.0F;
+        for (int i = 0; i < 3; ++i) {
+            const auto k = static_cast<LobeKinds>(1 << i);
+            f[i] = (present & k) != kNoLobe ? vertex.bsdf.eval(vertex.wo, sample->wi, k, TransportMode::Radiance) : Rgb(0.0F);
+            total += average(f[i]);
+        }
+        if (!(total > 0.0F)) return false;
+        float left = chooseKind * total;
+        int chosen = 0;
+        while (chosen < 2 && (left >= average(f[chosen]) || average(f[chosen]) == 0.0F)) left -= average(f[chosen++]);
+        while (chosen > 0 && average(f[chosen]) == 0.0F) --chosen;
+        kind = static_cast<LobeKinds>(1 << chosen);
+        weight = f[chosen] * (total / (average(f[chosen]) * sample->pdfSolidAngle));
+    }
+    state.throughput *= weight;
+    state.etaScale *= sample->etaScale;
+    const bool casts = kind == kSpecular;
+    if (casts && state.ledger.atLight() == PathClass::Emission) state.straight = false;
+    state.ledger.pass(casts);
+    if (kind == kDiffuse) {
+        // Only the first receiver reads the caustic map; a receiver that the global map did not serve is path traced.
+        state.behind = context_.maps.caustic != nullptr && !state.gathering ? Behind::CausticMapped : Behind::PathTraced;
+        state.chainEmpty = state.chainSpecular = true;
+        state.gathering = true;
+        state.skipDirect = false;
+    } else {
+        state.chainEmpty = false;
+        state.chainSpecular = state.chainSpecular && casts;
+    }
+    state.pdfSolidAngle = sample->pdfSolidAngle;
+    state.lightPoint = vertex.hit.point.position;
+    state.lightNormal = vertex.lightNormal;
+    const glm::vec3& ng = vertex.bsdf.geometricNormal();
+    const bool behindSurface = glm::dot(sample->wi, ng) < 0.0F;
+    state.ray.ray = Ray{offsetOrigin(vertex.hit.point.position, behindSurface ? -ng : ng), sample->wi, std::numeric_limits<float>::infinity()};
+    if (sample->transmitted && vertex.bsdf.bordersVolume()) {
+        state.ray.absorption = vertex.bsdf.backSide() ? Rgb(0.0F) : context_.scene.surfaces().materials()[vertex.hit.point.material].absorption;
+        state.ray.mediumKnown = true;
+    }
+    const float threshold = context_.options.rouletteThreshold;
+    float survive = threshold > 0.0F ? std::min(1.0F, maxComponent(state.throughput) * state.etaScale / threshold) : 1.0F;
+    if (state.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
+    if (!(survive > 0.0F)) return false;
+    if (survive < 1.0F) {
+        if (sampler.next1D() >= survive) return false;
+        state.throughput /= survive;
+    }
+    return true;
+}
+
+bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept {
+    const std::uint64_t dimension = kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
+    sampler.setDimension(dimension + kCoin);
+    ++rays_;
+    const auto hit = context_.scene.intersect(state.ray.ray, sampler.next1D());
+    if (firstDistance != nullptr && state.vertices == 0)
+        *firstDistance = hit ? hit->distance : std::numeric_limits<float>::infinity();
+    if (!hit) {
+        addEscaped(state);
+        return false;
+    }
+    ++state.vertices;
+    state.pathLength += hit->distance;
+    const glm::vec3 wo = -state.ray.ray.direction;
+    const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo);
+    if (!state.ray.mediumKnown) {
+        if (bsdf.backSide() && bsdf.bordersVolume()) state.ray.absorption = context_.scene.surfaces().materials()[hit->point.material].absorption;
+        state.ray.mediumKnown = true;
+    }
+    if (!isBlack(state.ray.absorption)) state.throughput *= transmittance(state.ray.absorption, hit->distance);
+    addEmitted(state, *hit);
+    const bool transmits = context_.scene.surfaces().materials()[hit->point.material].transmission > 0.0F;
+    const Vertex vertex{*hit, bsdf, wo, state.ray.footprintAtOrigin + state.ray.footprintSpread * state.pathLength,
+                        transmits ? glm::vec3(0.0F) : bsdf.geometricNormal()};
+    if (first != nullptr && state.vertices == 1) {
+        first->albedo = bsdf.diffuse().reflectance;
+        first->normal = bsdf.shadingNormal();
+        first->depth = hit->distance;
+    }
+    const LobeKinds kinds = bsdf.kinds();
+    if (kinds == kNoLobe || (context_.options.maxDepth > 0 && state.vertices > context_.options.maxDepth)) return false;
+    LobeKinds sampled = kinds & (kSpecular | kGlossy);
+    LobeKinds direct = kinds;
+    sampler.setDimension(dimension + kCorner);
+    if ((kinds & kDiffuse) != kNoLobe) {
+        const LobeKinds carried = serveDiffuse(state, vertex, sampler, first);
+        sampled = sampled | carried;
+        if (state.gathering && carried == kNoLobe) direct = direct & (kSpecular | kGlossy);  // the global map holds direct light too
+    }
+    // S lobes behind a mapped receiver are the caustic map's, the whole chain long.
+    const bool chainMapped = state.behind == Behind::CausticMapped && state.gathering && state.chainSpecular;
+    const bool left = context_.options.leaveCaustics && state.straight && state.ledger.atLightAfter(true) == PathClass::Caustic;
+    if (chainMapped || left) direct = direct & (kGlossy | kDiffuse);
+    sampler.setDimension(dimension + kLightChoice);
+    if (direct != kNoLobe) addDirect(state, vertex, direct, sampled, sampler);
+    if (sampled == kNoLobe) return false;
+    sampler.setDimension(dimension + kLobeChoice);
+    if (!scatter(state, vertex, sampled, sampler)) return false;
+    state.lampSampled = state.pdfSolidAngle > 0.0F;
+    return true;
+}
+
+void Walk::run(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept {
+    while (step(state, sampler, first, firstDistance)) {}
+}
+
+LayeredRadiance Walk::fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first) noexcept {
+    State state;
+    state.ray = ray;
+    run(state, sampler, first, nullptr);
+    return state.radiance;
+}
+
+Rgb Walk::gather(const WalkRay& ray, Sampler& sampler, float& distance) noexcept {
+    State state;
+    state.ray = ray;
+    state.gathering = true;
+    state.skipDirect = true;
+    state.behind = context_.maps.caustic != nullptr ? Behind::CausticMapped : Behind::PathTraced;
+    state.ledger.pass(false);
+    run(state, sampler, nullptr, &distance);
+    return state.radiance.total();
+}
+
+GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexcept {
+    State state;
+    state.ray = start;
+    for (;;) {
+        const std::uint64_t dimension = kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
+        sampler.setDimension(dimension + kCoin);
+        ++rays_;
+        const auto hit = context_.scene.intersect(state.ray.ray, sampler.next1D());
+        if (!hit || ++state.vertices > kCertainVertices) return {};
+        state.pathLength += hit->distance;
+        const glm::vec3 wo = -state.ray.ray.direction;
+        const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo);
+        const float footprint = state.ray.footprintAtOrigin + state.ray.footprintSpread * state.pathLength;
+        if ((bsdf.kinds() & kDiffuse) != kNoLobe)
+            return {true, hit->point.position, bsdf.shadingNormal(), bsdf.geometricNormal(), footprint, state.ray.absorption, bsdf.diffuse(),
+                    luminance(state.throughput), 0.0F};
+        const Vertex vertex{*hit, bsdf, wo, footprint, glm::vec3(0.0F)};
+        sampler.setDimension(dimension + kLobeChoice);
+        if (!scatter(state, vertex, kSpecular | kGlossy, sampler)) return {};
+    }
+}
+
+}  // namespace pellucid
