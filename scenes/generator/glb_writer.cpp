@@ -30,13 +30,9 @@ glm::dquat lookingAlong(const glm::dvec3& direction) {
     return glm::quatLookAt(unit, steep ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(0.0, 1.0, 0.0));
 }
 
-Json toJson(const glm::dvec3& v) {
-    return {v.x, v.y, v.z};
-}
+Json toJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-void padTo4(std::vector<std::uint8_t>& bytes, std::uint8_t filler) {
-    bytes.resize((bytes.size() + 3) / 4 * 4, filler);
-}
+void padTo4(std::vector<std::uint8_t>& bytes, std::uint8_t filler) { bytes.resize((bytes.size() + 3) / 4 * 4, filler); }
 
 void writeWord(std::ostream& out, std::size_t value) {
     const auto word = static_cast<std::uint32_t>(value);
@@ -79,13 +75,16 @@ std::size_t GlbWriter::addMesh(const std::string& name, const Shape& shape, std:
     if (!shape.uvs.empty()) {
         const std::vector<glm::vec2> uvs(shape.uvs.begin(), shape.uvs.end());
         const std::size_t view = addView(uvs.data(), uvs.size() * sizeof(glm::vec2), kVertexTarget);
-        attributes["TEXCOORD_0"] = push(root_["accessors"], {{"bufferView", view}, {"componentType", kFloat},
-                                                             {"count", uvs.size()}, {"type", "VEC2"}});
+        attributes["TEXCOORD_0"] =
+            push(root_["accessors"],
+                 {{"bufferView", view}, {"componentType", kFloat}, {"count", uvs.size()}, {"type", "VEC2"}});
     }
     if (!shape.colors.empty()) {
         const std::size_t view = addView(shape.colors.data(), shape.colors.size() * sizeof(glm::u8vec4), kVertexTarget);
-        attributes["COLOR_0"] = push(root_["accessors"], {{"bufferView", view}, {"componentType", kUnsignedByte},
-                                                          {"count", shape.colors.size()}, {"normalized", true},
+        attributes["COLOR_0"] = push(root_["accessors"], {{"bufferView", view},
+                                                          {"componentType", kUnsignedByte},
+                                                          {"count", shape.colors.size()},
+                                                          {"normalized", true},
                                                           {"type", "VEC4"}});
     }
     const Json primitive = {{"attributes", attributes}, {"indices", addIndices(shape)}, {"material", material}};
@@ -101,8 +100,10 @@ void GlbWriter::add(const std::string& name, const Shape& shape, std::size_t mat
 }
 
 void GlbWriter::addCamera(const std::string& name, const View& view) {
-    const Json perspective = {{"yfov", glm::radians(view.verticalFovDegrees)}, {"aspectRatio", view.aspect}, {"znear", 0.001}};
-    const std::size_t camera = push(root_["cameras"], {{"name", name}, {"type", "perspective"}, {"perspective", perspective}});
+    const Json perspective = {
+        {"yfov", glm::radians(view.verticalFovDegrees)}, {"aspectRatio", view.aspect}, {"znear", 0.001}};
+    const std::size_t camera =
+        push(root_["cameras"], {{"name", name}, {"type", "perspective"}, {"perspective", perspective}});
     addNode({{"name", name}, {"camera", camera}}, {view.eye, lookingAlong(view.target - view.eye)});
 }
 
@@ -172,8 +173,10 @@ std::size_t GlbWriter::addIndices(const Shape& shape) {
     const std::vector<std::uint16_t> narrow(wide.begin(), isShort ? wide.end() : wide.begin());
     const std::size_t view = isShort ? addView(narrow.data(), narrow.size() * sizeof(std::uint16_t), kIndexTarget)
                                      : addView(wide.data(), wide.size() * sizeof(std::uint32_t), kIndexTarget);
-    return push(root_["accessors"], {{"bufferView", view}, {"componentType", isShort ? kUnsignedShort : kUnsignedInt},
-                                     {"count", wide.size()}, {"type", "SCALAR"}});
+    return push(root_["accessors"], {{"bufferView", view},
+                                     {"componentType", isShort ? kUnsignedShort : kUnsignedInt},
+                                     {"count", wide.size()},
+                                     {"type", "SCALAR"}});
 }
 
 void GlbWriter::addNode(Json node, const Placement& placement) {

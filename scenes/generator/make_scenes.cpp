@@ -14,10 +14,18 @@ int main(int argc, char** argv) {
         return 1;
     }
     const std::vector<std::pair<std::string, scenes::GlbWriter (*)()>> all = {
-        {"glass-and-mirror", scenes::glassAndMirror}, {"goblet", scenes::goblet},           {"pool", scenes::pool},
-        {"prism-spot", scenes::prismSpot},            {"lens-point", scenes::lensPoint},    {"ring", scenes::ring},
-        {"rough-metal", scenes::roughMetal},          {"diffuse-room", scenes::diffuseRoom}, {"two-rooms", scenes::twoRooms},
-        {"many-lamps", scenes::manyLamps},            {"corner-open", scenes::cornerOpen},  {"textured", scenes::textured},
+        {"glass-and-mirror", scenes::glassAndMirror},
+        {"goblet", scenes::goblet},
+        {"pool", scenes::pool},
+        {"prism-spot", scenes::prismSpot},
+        {"lens-point", scenes::lensPoint},
+        {"ring", scenes::ring},
+        {"rough-metal", scenes::roughMetal},
+        {"diffuse-room", scenes::diffuseRoom},
+        {"two-rooms", scenes::twoRooms},
+        {"many-lamps", scenes::manyLamps},
+        {"corner-open", scenes::cornerOpen},
+        {"textured", scenes::textured},
     };
     try {
         const std::filesystem::path folder = argv[1];
@@ -25,7 +33,8 @@ int main(int argc, char** argv) {
         for (const auto& [name, make] : all) {
             const std::filesystem::path file = folder / (name + ".glb");
             make().write(file);
-            std::printf("%-28s %8ju bytes\n", file.string().c_str(), static_cast<std::uintmax_t>(std::filesystem::file_size(file)));
+            std::printf("%-28s %8ju bytes\n", file.string().c_str(),
+                        static_cast<std::uintmax_t>(std::filesystem::file_size(file)));
         }
     } catch (const std::exception& error) {
         std::fprintf(stderr, "make_scenes: error: %s\n", error.what());

@@ -1,17 +1,17 @@
 #include "materials.h"
 
-#include <glm/gtx/component_wise.hpp>
+#include <algorithm>
 
 namespace scenes {
 
 namespace {
 
-Json toJson(const glm::dvec3& v) {
-    return {v.x, v.y, v.z};
-}
+Json toJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json metallicRoughness(const glm::dvec3& color, double metallic, double roughness) {
-    return {{"baseColorFactor", {color.x, color.y, color.z, 1.0}}, {"metallicFactor", metallic}, {"roughnessFactor", roughness}};
+    return {{"baseColorFactor", {color.x, color.y, color.z, 1.0}},
+            {"metallicFactor", metallic},
+            {"roughnessFactor", roughness}};
 }
 
 }  // namespace
@@ -23,7 +23,7 @@ Json lambert(const std::string& name, const glm::dvec3& reflectance) {
 }
 
 Json lamp(const std::string& name, const glm::dvec3& radiance) {
-    const double strength = glm::compMax(radiance);
+    const double strength = std::max({radiance.x, radiance.y, radiance.z});
     Json material = lambert(name, glm::dvec3(0.0));
     material["emissiveFactor"] = toJson(radiance / strength);
     material["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};

@@ -14,7 +14,7 @@ GlbWriter glassAndMirror() {
     const auto teal = scene.addMaterial(lambert("teal", {0.08, 0.36, 0.42}));
     const auto mirror = scene.addMaterial(metal("mirror", {1.0, 1.0, 1.0}, 0.0));
     const auto glass = scene.addMaterial(dielectric("glass", 1.5));
-    const auto light = scene.addMaterial(lamp("lamp", {170.0, 150.0, 115.0}));
+    const auto light = scene.addMaterial(lamp("lamp", {230.0, 205.0, 160.0}));
 
     scene.add("floor", withoutUvs(floorQuad({0.0, 0.0, 0.0}, 2.4, 2.4)), pale);
     scene.add("ceiling", withoutUvs(ceilingQuad({0.0, 2.0, 0.0}, 2.4, 2.4)), pale);
@@ -38,15 +38,24 @@ constexpr double kBowlThickness = 0.0018, kBowlTopDegrees = 38.0;
 
 /// Foot, stem and bowl in one closed body: up the outside, over the round rim, down the inside.
 Profile gobletProfile() {
-    const Profile outer = ellipseArc(kBowlCentre, kBowlAxes, -80.0, kBowlTopDegrees, 20, kBowlThickness);
+    const Profile outer = ellipseArc(kBowlCentre, kBowlAxes, -72.0, kBowlTopDegrees, 20, kBowlThickness);
     const Profile inner = reversed(ellipseArc(kBowlCentre, kBowlAxes, -90.0, kBowlTopDegrees, 22));
     const glm::dvec2 rimNormal = outer.back().normal;
     const double rimDegrees = glm::degrees(std::atan2(rimNormal.y, rimNormal.x));
     const glm::dvec2 rimCentre = 0.5 * (outer.back().position + inner.front().position);
     const Profile wholeRim = arc(rimCentre, 0.5 * kBowlThickness, rimDegrees, rimDegrees + 180.0, 6);
     const Profile rim(wholeRim.begin() + 1, wholeRim.end() - 1);
-    const Profile stem = spline({{0.050, 0.0010}, {0.034, 0.0022}, {0.020, 0.0042}, {0.009, 0.0100}, {0.0043, 0.0240},
-                                 {0.0038, 0.0500}, {0.0042, 0.0760}, {0.0047, 0.0890}, outer[0].position, outer[1].position},
+    const Profile stem = spline({{0.050, 0.0010},
+                                 {0.034, 0.0022},
+                                 {0.020, 0.0042},
+                                 {0.009, 0.0100},
+                                 {0.0043, 0.0240},
+                                 {0.0038, 0.0500},
+                                 {0.0042, 0.0740},
+                                 {0.0052, 0.0875},
+                                 {0.0078, 0.0933},
+                                 outer[0].position,
+                                 outer[1].position},
                                 4);
     return line({0.0, 0.0}, {0.034, 0.0}) + arc({0.034, 0.0011}, 0.0011, -90.0, 90.0, 6) +
            Profile(stem.begin() + 1, stem.end() - 1) + outer + rim + inner;
@@ -87,8 +96,12 @@ glm::dvec3 waterAt(double x, double z) {
     struct Wave {
         double amplitude, kx, kz, phase;
     };
-    constexpr std::array<Wave, 6> kWaves{{{0.0110, 2.9, 1.3, 0.4}, {0.0080, -1.7, 4.1, 1.9}, {0.0052, 5.3, -3.7, 3.1},
-                                          {0.0036, 3.1, 7.3, 5.0}, {0.0024, -8.3, 3.9, 0.9}, {0.0016, 7.7, 8.9, 2.3}}};
+    constexpr std::array<Wave, 6> kWaves{{{0.0110, 2.9, 1.3, 0.4},
+                                          {0.0080, -1.7, 4.1, 1.9},
+                                          {0.0052, 5.3, -3.7, 3.1},
+                                          {0.0036, 3.1, 7.3, 5.0},
+                                          {0.0024, -8.3, 3.9, 0.9},
+                                          {0.0016, 7.7, 8.9, 2.3}}};
     glm::dvec3 value(-0.14, 0.0, 0.0);
     for (const Wave& wave : kWaves) {
         const double angle = wave.kx * x + wave.kz * z + wave.phase;

@@ -14,7 +14,8 @@ GlbWriter ring() {
     const auto light = scene.addMaterial(lamp("lamp", {3000.0, 2850.0, 2500.0}));
 
     scene.add("table", withoutUvs(floorQuad({0.0, 0.0, 0.0}, 0.8, 0.8)), table);
-    scene.add("ring", lathe(roundedRectangle({0.050, 0.0}, {0.054, 0.030}, 0.0015, 5), 144), gold, {{0.0, 0.0002, 0.0}});
+    scene.add("ring", lathe(roundedRectangle({0.050, 0.0}, {0.054, 0.030}, 0.0015, 5), 144), gold,
+              {{0.0, 0.0002, 0.0}});
     const double height = glm::radians(25.0);
     const glm::dvec3 lampAt = 0.4 * glm::dvec3(-0.8 * std::cos(height), std::sin(height), 0.6 * std::cos(height));
     scene.add("lamp", withoutUvs(facingQuad(lampAt, {0.0, 0.0, 0.0}, 0.012)), light);
@@ -35,7 +36,8 @@ GlbWriter roughMetal() {
 
     scene.add("table", withoutUvs(floorQuad({0.0, 0.0, 0.0}, 1.6, 1.2)), table);
     scene.add("wall", withoutUvs(quad({-0.8, 0.0, -0.55}, {1.6, 0.0, 0.0}, {0.0, 0.9, 0.0})), wall);
-    scene.add("brass-ring", lathe(roundedRectangle({0.115, 0.0}, {0.125, 0.08}, 0.004, 4), 80), brass, {{-0.22, 0.0005, 0.12}});
+    scene.add("brass-ring", lathe(roundedRectangle({0.115, 0.0}, {0.125, 0.08}, 0.004, 4), 80), brass,
+              {{-0.22, 0.0005, 0.12}});
     scene.add("copper-ball", sphere(0.10, 56, 28), copper, {{-0.16, 0.1005, -0.25}});
     scene.add("iron-torus", torus(0.10, 0.035, 64, 24), iron, {{0.20, 0.0355, -0.22}});
     scene.add("frosted-ball", sphere(0.085, 56, 28), frosted, {{0.17, 0.0855, 0.15}});

@@ -31,19 +31,22 @@ Shape tableShape(const glm::dvec3& size, double board, double leg) {
     for (const double sx : {-1.0, 1.0}) {
         for (const double sz : {-1.0, 1.0}) {
             const glm::dvec3 at(sx * (half.x - leg), 0.0, sz * (half.z - leg));
-            parts.push_back(box(at - glm::dvec3(leg / 2, 0.0, leg / 2), at + glm::dvec3(leg / 2, size.y - board + 0.002, leg / 2)));
+            parts.push_back(
+                box(at - glm::dvec3(leg / 2, 0.0, leg / 2), at + glm::dvec3(leg / 2, size.y - board + 0.002, leg / 2)));
         }
     }
     return withoutUvs(merged(parts));
 }
 
 Shape chairShape() {
-    return merged({tableShape({0.44, 0.46, 0.44}, 0.04, 0.04), withoutUvs(box({-0.22, 0.458, -0.22}, {0.22, 0.95, -0.18}))});
+    return merged(
+        {tableShape({0.44, 0.46, 0.44}, 0.04, 0.04), withoutUvs(box({-0.22, 0.458, -0.22}, {0.22, 0.95, -0.18}))});
 }
 
 Shape sofaShape() {
-    return withoutUvs(merged({box({-0.9, 0.0, -0.4}, {0.9, 0.40, 0.4}), box({-0.9, 0.398, -0.4}, {0.9, 0.82, -0.16}),
-                              box({-1.08, 0.0, -0.4}, {-0.898, 0.60, 0.4}), box({0.898, 0.0, -0.4}, {1.08, 0.60, 0.4})}));
+    return withoutUvs(
+        merged({box({-0.9, 0.0, -0.4}, {0.9, 0.40, 0.4}), box({-0.9, 0.398, -0.4}, {0.9, 0.82, -0.16}),
+                box({-1.08, 0.0, -0.4}, {-0.898, 0.60, 0.4}), box({0.898, 0.0, -0.4}, {1.08, 0.60, 0.4})}));
 }
 
 Shape shelfShape() {
@@ -68,10 +71,13 @@ Shape bookRow(int count, double height) {
 }
 
 Shape vaseShape() {
-    return lathe(line({0.0, 0.0}, {0.055, 0.0}) +
-                     spline({{0.03, -0.02}, {0.055, 0.0}, {0.085, 0.08}, {0.070, 0.17}, {0.032, 0.24}, {0.045, 0.28}, {0.06, 0.31}}, 5) +
-                     line({0.045, 0.28}, {0.0, 0.28}),
-                 40);
+    return lathe(
+        line({0.0, 0.0}, {0.055, 0.0}) +
+            spline(
+                {{0.03, -0.02}, {0.055, 0.0}, {0.085, 0.08}, {0.070, 0.17}, {0.032, 0.24}, {0.045, 0.28}, {0.06, 0.31}},
+                5) +
+            line({0.045, 0.28}, {0.0, 0.28}),
+        40);
 }
 
 }  // namespace
@@ -95,7 +101,8 @@ GlbWriter diffuseRoom() {
     scene.add("table", tableShape({0.95, 0.42, 0.55}, 0.035, 0.05), wood, {{-0.1, 0.0125, -0.8}});
     scene.add("vase", vaseShape(), clay, {{-0.25, 0.433, -0.75}});
     scene.add("ball", sphere(0.09, 40, 20), white, {{0.14, 0.523, -0.85}});
-    scene.add("shelf", shelfShape(), wood, {{1.8, 0.0, -1.1}, glm::angleAxis(glm::radians(-90.0), glm::dvec3(0, 1, 0))});
+    scene.add("shelf", shelfShape(), wood,
+              {{1.8, 0.0, -1.1}, glm::angleAxis(glm::radians(-90.0), glm::dvec3(0, 1, 0))});
     const std::array<std::size_t, 3> covers = {clay, cloth, rug};
     for (std::size_t i = 0; i < covers.size(); ++i) {  // books look out of the shelf, towards -x
         const double y = std::array<double, 3>{0.541, 1.001, 1.461}[i];
@@ -119,18 +126,21 @@ GlbWriter twoRooms() {
     const auto boards = scene.addMaterial(lambert("boards", {0.48, 0.34, 0.22}));
     const auto door = scene.addMaterial(lambert("door", {0.32, 0.42, 0.36}));
     const auto blue = scene.addMaterial(lambert("blue", {0.20, 0.32, 0.58}));
-    const auto light = scene.addMaterial(lamp("lamp", {95.0, 85.0, 65.0}));
+    const auto light = scene.addMaterial(lamp("lamp", {240.0, 215.0, 165.0}));
 
     addRoom(scene, {-3.0, 0.0, -2.0}, {3.0, 2.5, 2.0}, {boards, white, white, warm, white, white});
     // The wall reaches 1 cm into floor, ceiling and outer walls; the doorway is 0.9 x 2.05 m.
-    scene.add("wall", withoutUvs(merged({box({-0.06, -0.01, -2.01}, {0.06, 2.51, -0.9}), box({-0.06, -0.01, 0.0}, {0.06, 2.51, 2.01}),
-                                         box({-0.06, 2.05, -0.9}, {0.06, 2.51, 0.0})})),
-              white);
+    scene.add(
+        "wall",
+        withoutUvs(merged({box({-0.06, -0.01, -2.01}, {0.06, 2.51, -0.9}), box({-0.06, -0.01, 0.0}, {0.06, 2.51, 2.01}),
+                           box({-0.06, 2.05, -0.9}, {0.06, 2.51, 0.0})})),
+        white);
     scene.add("door", withoutUvs(box({0.0, 0.01, 0.0}, {0.88, 2.03, 0.04})), door,
               {{-0.08, 0.0, -0.89}, glm::angleAxis(glm::radians(-125.0), glm::dvec3(0, 1, 0))});
     scene.add("table", tableShape({1.0, 0.72, 0.6}, 0.04, 0.06), boards, {{-1.7, 0.0, -1.3}});
     scene.add("ball", sphere(0.2, 48, 24), blue, {{-1.7, 0.921, -1.3}});
-    scene.add("box", withoutUvs(turned(box({-0.25, 0.0, -0.25}, {0.25, 0.5, 0.25}), {0, 1, 0}, 30.0)), warm, {{-2.2, 0.0, 0.1}});
+    scene.add("box", withoutUvs(turned(box({-0.25, 0.0, -0.25}, {0.25, 0.5, 0.25}), {0, 1, 0}, 30.0)), warm,
+              {{-2.2, 0.0, 0.1}});
     scene.add("lamp", withoutUvs(ceilingQuad({1.7, 2.485, 0.9}, 0.5, 0.5)), light);
     scene.addCamera("camera", {{-1.55, 1.45, 1.9}, {-1.05, 0.85, -1.2}, 58.0, 4.0 / 3.0});
     return scene;
@@ -146,7 +156,9 @@ GlbWriter manyLamps() {
     const auto strong = scene.addMaterial(lamp("strong-lamp", {420.0, 400.0, 360.0}));
 
     addRoom(scene, {-3.0, 0.0, -3.0}, {3.0, 3.0, 3.0}, {grey, grey, rust, green, grey, grey});
-    const auto stand = [](double half, double height) { return withoutUvs(box({-half, 0.0, -half}, {half, height, half})); };
+    const auto stand = [](double half, double height) {
+        return withoutUvs(box({-half, 0.0, -half}, {half, height, half}));
+    };
     scene.add("plinth", stand(0.45, 0.25), grey, {{0.35, 0.0, 0.0}});
     scene.add("glass-ball", sphere(0.4, 80, 40), glass, {{0.35, 0.7515, 0.0}});
     const std::size_t pillar = scene.addMesh("pillar", stand(0.12, 2.2), grey);
@@ -154,7 +166,8 @@ GlbWriter manyLamps() {
         scene.place("pillar", pillar, {at});
     }
 
-    const std::array<glm::dvec3, 4> colors = {glm::dvec3(14, 11, 8), glm::dvec3(8, 11, 14), glm::dvec3(14, 7, 7), glm::dvec3(7, 13, 8)};
+    const std::array<glm::dvec3, 4> colors = {glm::dvec3(14, 11, 8), glm::dvec3(8, 11, 14), glm::dvec3(14, 7, 7),
+                                              glm::dvec3(7, 13, 8)};
     std::vector<std::size_t> lamps;
     for (const glm::dvec3& color : colors) {
         const auto material = scene.addMaterial(lamp("small-lamp-" + std::to_string(lamps.size()), color));

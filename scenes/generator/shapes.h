@@ -1,5 +1,5 @@
-/// Triangle shapes from which the scenes are built: computed in double, wound counter-clockwise seen from outside, closed
-/// bodies watertight (equal positions are equal bit for bit). Metres, y up.
+/// Triangle shapes from which the scenes are built: computed in double, wound counter-clockwise seen from outside,
+/// closed bodies watertight (equal positions are equal bit for bit). Metres, y up.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace scenes {
 /// Attribute arrays are empty or as long as `positions`. Without normals glTF shades flat.
 struct Shape {
     std::vector<glm::dvec3> positions;
-    std::vector<glm::dvec3> normals;    ///< unit
-    std::vector<glm::dvec2> uvs;        ///< glTF convention: (0,0) is the upper left corner of an image
-    std::vector<glm::u8vec4> colors;    ///< linear, normalised, multiplies the base colour
+    std::vector<glm::dvec3> normals;  ///< unit
+    std::vector<glm::dvec2> uvs;      ///< glTF convention: (0,0) is the upper left corner of an image
+    std::vector<glm::u8vec4> colors;  ///< linear, normalised, multiplies the base colour
     std::vector<glm::uvec3> triangles;
 };
 
-// --- flat shapes -----------------------------------------------------------------------------------------------------
+// --- flat shapes ----------------------------------------------------------------------------------------------------
 
 /// The parallelogram corner + s u + t v; its front looks along u x v. With uvs: (s, 1 - t).
 [[nodiscard]] Shape quad(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v);
@@ -39,11 +39,11 @@ using TileColor = std::function<glm::u8vec4(int column, int row)>;
 [[nodiscard]] Shape tiles(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v, int columns, int rows,
                           const TileColor& color);
 
-/// The convex polygon `outline` (x, z; counter-clockwise with x to the right and z up on the page) extruded from y = low
-/// to y = high: a closed body with flat faces.
+/// The convex polygon `outline` in plan, (x, -z), counter-clockwise seen from above, extruded from y = low to y = high:
+/// a closed body with flat faces.
 [[nodiscard]] Shape extrusion(const std::vector<glm::dvec2>& outline, double low, double high);
 
-// --- round shapes ----------------------------------------------------------------------------------------------------
+// --- round shapes ---------------------------------------------------------------------------------------------------
 
 /// A point of a profile in the half plane (radius, height), with the outward unit normal there.
 struct ProfilePoint {
@@ -66,7 +66,8 @@ using Profile = std::vector<ProfilePoint>;
 /// Catmull-Rom curve from points[1] to points[n-2]; the first and last point only give the end tangents.
 [[nodiscard]] Profile spline(const std::vector<glm::dvec2>& points, int stepsPerSpan);
 /// A rectangle between `low` and `high` whose corners are rounded with `radius`: the section of a ring.
-[[nodiscard]] Profile roundedRectangle(const glm::dvec2& low, const glm::dvec2& high, double radius, int stepsPerCorner);
+[[nodiscard]] Profile roundedRectangle(const glm::dvec2& low, const glm::dvec2& high, double radius,
+                                       int stepsPerCorner);
 
 /// Surface of revolution about the y axis.
 [[nodiscard]] Shape lathe(const Profile& profile, int segments);
@@ -82,7 +83,7 @@ using HeightFunction = std::function<glm::dvec3(double x, double z)>;
 [[nodiscard]] Shape heightfield(const glm::dvec2& low, const glm::dvec2& high, int columns, int rows,
                                 const HeightFunction& height);
 
-// --- changes ---------------------------------------------------------------------------------------------------------
+// --- changes --------------------------------------------------------------------------------------------------------
 
 [[nodiscard]] Shape moved(Shape shape, const glm::dvec3& by);
 [[nodiscard]] Shape turned(Shape shape, const glm::dvec3& axis, double degrees);

@@ -66,7 +66,8 @@ Shape tiles(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v, 
     const glm::dvec3 stepV = v / static_cast<double>(rows);
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
-            appendQuad(shape, corner + static_cast<double>(column) * stepU + static_cast<double>(row) * stepV, stepU, stepV);
+            appendQuad(shape, corner + static_cast<double>(column) * stepU + static_cast<double>(row) * stepV, stepU,
+                       stepV);
             shape.colors.insert(shape.colors.end(), 4, color(column, row));
         }
     }

@@ -9,9 +9,7 @@ namespace scenes {
 namespace {
 
 /// The normal to the right of a travelled direction.
-glm::dvec2 rightOf(const glm::dvec2& direction) {
-    return glm::normalize(glm::dvec2(direction.y, -direction.x));
-}
+glm::dvec2 rightOf(const glm::dvec2& direction) { return glm::normalize(glm::dvec2(direction.y, -direction.x)); }
 
 /// sin and cos that are exact at multiples of 90 degrees, so that poles lie on the axis.
 glm::dvec2 unitVector(double degrees) {
@@ -24,9 +22,7 @@ glm::dvec2 unitVector(double degrees) {
     return {std::cos(glm::radians(degrees)), std::sin(glm::radians(degrees))};
 }
 
-bool onAxis(const ProfilePoint& point) {
-    return point.position.x == 0.0;
-}
+bool onAxis(const ProfilePoint& point) { return point.position.x == 0.0; }
 
 }  // namespace
 
@@ -48,8 +44,8 @@ Profile line(const glm::dvec2& from, const glm::dvec2& to) {
     return {{from, normal}, {to, normal}};
 }
 
-Profile ellipseArc(const glm::dvec2& centre, const glm::dvec2& semiAxes, double fromDegrees, double toDegrees, int steps,
-                   double offset) {
+Profile ellipseArc(const glm::dvec2& centre, const glm::dvec2& semiAxes, double fromDegrees, double toDegrees,
+                   int steps, double offset) {
     Profile profile;
     for (int i = 0; i <= steps; ++i) {
         const glm::dvec2 unit = unitVector(fromDegrees + (toDegrees - fromDegrees) * i / steps);
@@ -118,7 +114,8 @@ Shape lathe(const Profile& profile, int segments) {
                 shape.triangles.emplace_back(vertex(row, column), vertex(row + 1, column), vertex(row, column + 1));
             }
             if (!onAxis(profile[row + 1])) {
-                shape.triangles.emplace_back(vertex(row + 1, column), vertex(row + 1, column + 1), vertex(row, column + 1));
+                shape.triangles.emplace_back(vertex(row + 1, column), vertex(row + 1, column + 1),
+                                             vertex(row, column + 1));
             }
         }
     }
@@ -136,8 +133,9 @@ Shape torus(double majorRadius, double minorRadius, int segments, int sides) {
 }
 
 Shape cylinder(double radius, double low, double high, int segments) {
-    return lathe(line({0.0, low}, {radius, low}) + line({radius, low}, {radius, high}) + line({radius, high}, {0.0, high}),
-                 segments);
+    return lathe(
+        line({0.0, low}, {radius, low}) + line({radius, low}, {radius, high}) + line({radius, high}, {0.0, high}),
+        segments);
 }
 
 Shape heightfield(const glm::dvec2& low, const glm::dvec2& high, int columns, int rows, const HeightFunction& height) {

@@ -25,7 +25,7 @@ const std::map<std::string, Method> kMethods{
 
 /// Option texts as typed, until all are known: a --config is read before the first --set, wherever they stand.
 struct TypedText {
-    std::string size, config, layers, crop, method = "photon";
+    std::string size, config, layers, crop, method = "photon", methods, times;
     std::vector<std::string> set, failAbove;
 };
 
@@ -58,9 +58,21 @@ void addSceneFile(CLI::App& app, SceneArguments& common) {
     app.add_flag("--quiet", common.quiet, "print nothing but errors");
 }
 
-/// The options that mean the same for every command that renders.
-void addSceneOptions(CLI::App& app, SceneArguments& common, TypedText& typed) {
+/// What means the same for every command that renders, one image or many.
+void addPictureOptions(CLI::App& app, SceneArguments& common, TypedText& typed) {
     addSceneFile(app, common);
+    app.add_option("--size", typed.size, "pixels (default: 512 wide, the camera's aspect)")->type_name("WxH");
+    app.add_option("--camera", common.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
+    app.add_option("--seed", common.seed, "another seed makes other noise (default: 0)")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N");
+    addRepeatable(app, "--set", typed.set, "a parameter by name; repeatable, after --config")->type_name("KEY=VALUE");
+    app.add_option("--config", typed.config, "parameters from a TOML file")->type_name("FILE.toml");
+}
+
+/// The options of the commands that render one image.
+void addSceneOptions(CLI::App& app, SceneArguments& common, TypedText& typed) {
+    addPictureOptions(app, common, typed);
     app.add_option("--method", typed.method,
                    "photon (default): maps, cache and gather. path: unbiased path tracing. "
                    "light: light tracing only. reference: path and light tracing by path class")
@@ -71,13 +83,6 @@ void addSceneOptions(CLI::App& app, SceneArguments& common, TypedText& typed) {
     addBudget<std::uint32_t>(app, "--spp", common.budget.samples, "stop after so many samples a pixel")->type_name("N");
     addBudget<double>(app, "--error", common.budget.error, "stop at this relative error (default: 0.05, with a cap)")
         ->type_name("E");
-    app.add_option("--size", typed.size, "pixels (default: 512 wide, the camera's aspect)")->type_name("WxH");
-    app.add_option("--camera", common.camera, "camera of the scene (default: the first)")->type_name("NAME|INDEX");
-    app.add_option("--seed", common.seed, "another seed makes other noise (default: 0)")
-        ->check(CLI::NonNegativeNumber)
-        ->type_name("N");
-    addRepeatable(app, "--set", typed.set, "a parameter by name; repeatable, after --config")->type_name("KEY=VALUE");
-    app.add_option("--config", typed.config, "parameters from a TOML file")->type_name("FILE.toml");
 }
 
 void resolve(SceneArguments& common, const TypedText& typed) {
@@ -101,7 +106,9 @@ struct Parser {
     PlanArguments plan;
     InfoArguments info;
     DiffArguments diff;
-    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand;
+    CheckArguments check;
+    CompareArguments compare;
+    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand, *compareCommand, *checkCommand;
 
     Parser() {
         app.require_subcommand(1);
@@ -113,6 +120,8 @@ struct Parser {
         planCommand = addPlan();
         infoCommand = addInfo();
         diffCommand = addDiff();
+        checkCommand = addCheck();
+        compareCommand = addCompare();
     }
 
     CLI::App* addRender() {
@@ -182,6 +191,64 @@ struct Parser {
         return command;
     }
 
+    CLI::App* addCompare() {
+        CLI::App* command = app.add_subcommand("compare", "error against run time of several methods, with a report");
+        addPictureOptions(*command, compare.common, typed);
+        command->add_option("-o,--output", compare.folder, "folder for runs, figures and report.html")
+            ->required()
+            ->type_name("DIR");
+        command
+            ->add_option("--methods", typed.methods,
+                         "photon, path, light, reference, each with settings of its own after a colon")
+            ->required()
+            ->type_name("M[:KEY=VALUE+...],...");
+        command->add_option("--times", typed.times, "budgets of each run, in seconds")->required()->type_name("S,S,...");
+        command->add_option("--seeds", compare.seeds, "independent runs of each method and time (default: 8)")
+            ->check(CLI::Range(1, 1000))
+            ->type_name("K");
+        command
+            ->add_option("--reference", compare.reference,
+                         "image to measure against (.exr, .hdr, .pfm); layers variance.* and mask.Y are used. "
+                         "Without it one is made")
+            ->type_name("FILE");
+        command
+            ->add_option("--reference-time", compare.referenceTime,
+                         "longest time for making a reference (default: 100 times the longest of --times)")
+            ->check(CLI::PositiveNumber)
+            ->type_name("S");
+        command->footer(
+            "Runs that are finished in DIR are not rendered again: the same command goes on after an interruption, and\n"
+            "more methods, times or seeds add to what is there.\n"
+            "Examples:\n  pellucid compare scene.glb -o study --methods path,photon --times 1,2,4,8 --seeds 8\n"
+            "  pellucid compare scene.glb -o study --methods photon,photon:cache.error=0.1+cache.rays=256 --times 2,8\n"
+            "  pellucid compare scene.glb -o study --methods path,photon --times 4 --reference ref.exr");
+        return command;
+    }
+
+    [[nodiscard]] Arguments resultOfCompare() {
+        resolve(compare.common, typed);
+        compare.methods = parseMethods(typed.methods, compare.common.settings);
+        compare.times = parseTimes(typed.times);
+        return compare;
+    }
+
+    CLI::App* addCheck() {
+        CLI::App* command = app.add_subcommand("check", "the numerical suite: closed forms, extremes, invariants");
+        command->add_option("--filter", check.filter, "only cases with this in their name")->type_name("NAME");
+        CLI::Option* json = command->add_flag("--json", check.json, "for programs");
+        command->add_flag("--markdown", check.markdown, "the page docs/validation.md")->excludes(json);
+        command->add_flag("--quick", check.quick, "leave out the slow cases");
+        command->add_option("--threads", check.threads, "worker threads; 0: all. No figure depends on it")
+            ->check(CLI::Range(0, 1024))
+            ->type_name("N");
+        command->add_option("--seed", check.seed, "another seed makes other noise (default: 0)")
+            ->check(CLI::NonNegativeNumber)
+            ->type_name("N");
+        command->add_flag("--quiet", check.quiet, "print nothing but the report and errors");
+        command->footer("Examples:\n  pellucid check --quick\n  pellucid check --filter closed-form --json");
+        return command;
+    }
+
     [[nodiscard]] std::string nameOfUsed() const {
         const std::vector<CLI::App*> used = app.get_subcommands();
         return used.empty() ? "" : used.front()->get_name();
@@ -210,12 +277,28 @@ struct Parser {
             return plan;
         }
         if (infoCommand->parsed()) return info;
+        if (checkCommand->parsed()) return check;
+        if (compareCommand->parsed()) return resultOfCompare();
         if (!typed.crop.empty()) diff.crop = parseCrop(typed.crop);
         for (const std::string& text : typed.failAbove) diff.failAbove.push_back(parseGate(text));
         if (!diff.map.empty()) requireExtension("--map", diff.map, kMapExtensions);
         return diff;
     }
 };
+
+/// The command for a shell, with quotes where it needs them.
+[[nodiscard]] std::string asTyped(int count, const char* const* values) {
+    std::string line = "pellucid";
+    for (int i = 1; i < count; ++i) {
+        const std::string word = values[i];
+        const bool plain = !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                                   "0123456789-_=+,.:/%@") == std::string::npos;
+        std::string quoted;
+        for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        line += plain ? " " + word : " '" + quoted + "'";
+    }
+    return line;
+}
 
 /// One line for what CLI11 says.
 [[nodiscard]] std::string oneLine(std::string text) {
@@ -241,7 +324,9 @@ Arguments parseArguments(int count, const char* const* values) {
         throw Error(ErrorKind::Usage, oneLine(error.what()), "command line",
                     "see `pellucid " + command + (command.empty() ? "" : " ") + "--help`");
     }
-    return parser.result();
+    Arguments arguments = parser.result();
+    if (auto* const compare = std::get_if<CompareArguments>(&arguments)) compare->command = asTyped(count, values);
+    return arguments;
 }
 
 }  // namespace pellucid

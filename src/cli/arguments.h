@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pellucid/render/render.h>
+#include <pellucid/study/compare.h>
 #include <pellucid/study/metrics.h>
 
 namespace pellucid {
@@ -57,12 +58,30 @@ struct DiffArguments {
     bool exposureInvariant = false;
 };
 
+struct CompareArguments {
+    SceneArguments common;    ///< its method and budget are not used
+    std::vector<CompareMethod> methods;
+    std::vector<double> times;
+    int seeds = 8;            ///< common.seed is the first
+    std::string folder, reference;
+    double referenceTime = 0.0;
+    std::string command;      ///< as typed, for the report
+};
+
+struct CheckArguments {
+    std::string filter;
+    bool json = false, markdown = false, quick = false, quiet = false;
+    int threads = 0;
+    std::uint64_t seed = 0;
+};
+
 /// --help and --version: text for standard output, and done.
 struct TextArguments {
     std::string text;
 };
 
-using Arguments = std::variant<RenderArguments, PlanArguments, InfoArguments, DiffArguments, TextArguments>;
+using Arguments = std::variant<RenderArguments, PlanArguments, InfoArguments, DiffArguments, CompareArguments, CheckArguments,
+                               TextArguments>;
 
 /// Throws Error{Usage}; Error{BadInput} for what is wrong inside of the --config file.
 [[nodiscard]] Arguments parseArguments(int count, const char* const* values);

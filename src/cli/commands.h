@@ -14,5 +14,7 @@ using Clock = std::chrono::steady_clock;
 [[nodiscard]] int runPlan(const PlanArguments& arguments);
 [[nodiscard]] int runInfo(const InfoArguments& arguments);
 [[nodiscard]] int runDiff(const DiffArguments& arguments);
+[[nodiscard]] int runCheck(const CheckArguments& arguments);
+[[nodiscard]] int runCompare(const CompareArguments& arguments);
 
 }  // namespace pellucid

@@ -20,6 +20,8 @@ struct Run {
     int operator()(const PlanArguments& arguments) const { return runPlan(arguments); }
     int operator()(const InfoArguments& arguments) const { return runInfo(arguments); }
     int operator()(const DiffArguments& arguments) const { return runDiff(arguments); }
+    int operator()(const CheckArguments& arguments) const { return runCheck(arguments); }
+    int operator()(const CompareArguments& arguments) const { return runCompare(arguments); }
     int operator()(const TextArguments& arguments) const {
         printResult(arguments.text);
         return 0;

@@ -22,7 +22,8 @@ std::vector<std::byte> readFileBytes(const std::filesystem::path& file, const st
     std::vector<std::byte> bytes(static_cast<std::size_t>(size));
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
     if (static_cast<std::uintmax_t>(stream.gcount()) != size)
-        throw Error(ErrorKind::BadInput, "cannot read all of " + file.string(), where, "check the disk or copy the file again");
+        throw Error(ErrorKind::BadInput, "cannot read all of " + file.string(), where,
+                    "check the disk or copy the file again");
     return bytes;
 }
 

@@ -7,9 +7,9 @@
 namespace pellucid {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x46546C67;       // "glTF"
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;   // "JSON"
-constexpr std::uint32_t kBinaryChunk = 0x004E4942; // "BIN"
+constexpr std::uint32_t kMagic = 0x46546C67;        // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;    // "JSON"
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;  // "BIN"
 constexpr std::size_t kHeaderSize = 12, kChunkHeaderSize = 8;
 
 [[nodiscard]] std::uint32_t littleEndian(std::span<const std::byte> bytes, std::size_t at) {

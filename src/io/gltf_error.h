@@ -1,8 +1,10 @@
 /// One way to say what is wrong in a glTF file, and the list of what is only worth a warning.
 #pragma once
 
+#include <cstddef>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pellucid/base/error.h>
@@ -26,15 +28,16 @@ public:
     explicit GltfNotes(LogSink log) : log_(std::move(log)) {}
 
     void warn(const std::string& text) {
-        if (!seen_.insert(text).second) return;
-        warnings_.push_back(text);
-        logTo(log_, LogLevel::Warning, text);
+        if (seen_.size() > kMost || !seen_.insert(text).second) return;
+        warnings_.push_back(seen_.size() > kMost ? "further warnings about this file are left out" : text);
+        logTo(log_, LogLevel::Warning, warnings_.back());
     }
     void note(const std::string& text) const { logTo(log_, LogLevel::Info, text); }
 
     [[nodiscard]] std::vector<std::string> takeWarnings() { return std::move(warnings_); }
 
 private:
+    static constexpr std::size_t kMost = 200;
     LogSink log_;
     std::set<std::string> seen_;
     std::vector<std::string> warnings_;

@@ -1,6 +1,8 @@
 #include <pellucid/io/image_file.h>
 
 #include <algorithm>
+#include <array>
+#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,14 +11,16 @@
 
 #include <pellucid/base/error.h>
 
+#include "file_bytes.h"
 #include "image_read.h"
+#include "png_check.h"
 
 namespace pellucid {
 namespace {
 
 [[noreturn]] void unreadable(const std::string& reason, const std::string& where) {
-    throw Error(ErrorKind::BadInput, "cannot read the image: " + (reason.empty() ? "unknown format" : reason), where,
-                "give an EXR, HDR, PFM, PNG or TIFF file that is whole");
+    throw Error(ErrorKind::BadInput, "cannot read the image: " + (reason.empty() ? "unknown format" : oneLine(reason)),
+                where, "give an EXR, HDR, PFM, PNG or TIFF file that is whole");
 }
 
 /// Files that state integers are taken as encoded for a display; float files are linear.
@@ -28,11 +32,16 @@ namespace {
 [[nodiscard]] std::vector<std::string> channelNames(const OIIO::ImageSpec& spec, bool isExr) {
     if (isExr) return spec.channelnames;
     switch (spec.nchannels) {
-        case 1: return {"Y"};
-        case 2: return {"Y", "A"};
-        case 3: return {"R", "G", "B"};
-        case 4: return {"R", "G", "B", "A"};
-        default: return spec.channelnames;
+        case 1:
+            return {"Y"};
+        case 2:
+            return {"Y", "A"};
+        case 3:
+            return {"R", "G", "B"};
+        case 4:
+            return {"R", "G", "B", "A"};
+        default:
+            return spec.channelnames;
     }
 }
 
@@ -63,16 +72,29 @@ void decodeSrgb(Image& image) {
         for (int x = 0; x < part.width(); ++x) {
             const std::int64_t fx = std::int64_t{x} + spec.x - spec.full_x, fy = std::int64_t{y} + spec.y - spec.full_y;
             if (fx < 0 || fy < 0 || fx >= full.width() || fy >= full.height()) continue;
-            const auto from = static_cast<std::size_t>(y) * static_cast<std::size_t>(part.width()) +
-                              static_cast<std::size_t>(x);
-            const auto to = static_cast<std::size_t>(fy) * static_cast<std::size_t>(full.width()) +
-                            static_cast<std::size_t>(fx);
+            const auto from =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(part.width()) + static_cast<std::size_t>(x);
+            const auto to =
+                static_cast<std::size_t>(fy) * static_cast<std::size_t>(full.width()) + static_cast<std::size_t>(fx);
             for (int c = 0; c < part.channels(); ++c) full.at(to, c) = part.at(from, c);
         }
     return full;
 }
 
+[[nodiscard]] bool isDamagedPng(const std::filesystem::path& file) {
+    std::array<char, 8> start{};
+    std::ifstream(file, std::ios::binary).read(start.data(), start.size());
+    return isPng(std::as_bytes(std::span(start))) && !isWholePng(readFileBytes(file, file.string()));
+}
+
 }  // namespace
+
+std::string oneLine(std::string text) {
+    while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+    for (char& c : text)
+        if (c == '\n' || c == '\r') c = ' ';
+    return text;
+}
 
 void checkImageSize(std::int64_t width, std::int64_t height, std::int64_t channels, const std::string& where) {
     if (width > 0 && height > 0 && channels > 0 && width <= kMaxImageDimension && height <= kMaxImageDimension &&
@@ -88,6 +110,7 @@ Image readPixels(const std::filesystem::path& file, WantedChannels wanted) {
     const std::string where = file.string();
     std::error_code failure;
     if (!std::filesystem::is_regular_file(file, failure)) unreadable("no such file", where);
+    if (isDamagedPng(file)) unreadable("the PNG is not whole", where);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
     const auto input = OIIO::ImageInput::open(where, &config);
@@ -105,7 +128,8 @@ Image readPixels(const std::filesystem::path& file, WantedChannels wanted) {
 
     const bool whole = spec.x == spec.full_x && spec.y == spec.full_y && spec.width == spec.full_width &&
                        spec.height == spec.full_height;
-    return whole ? image : placeInFull(image, spec, where);
+    if (whole) return image;
+    return placeInFull(image, spec, where);
 }
 
 Image readImage(const std::filesystem::path& file) { return readPixels(file, WantedChannels::All); }

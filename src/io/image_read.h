@@ -17,6 +17,9 @@ inline constexpr std::int64_t kMaxImageValues = std::int64_t{1} << 32;  ///< pix
 /// Throws Error{BadInput} unless width, height and channels are positive and within the limits.
 void checkImageSize(std::int64_t width, std::int64_t height, std::int64_t channels, const std::string& where);
 
+/// A library's complaint as one line, as errors are printed.
+[[nodiscard]] std::string oneLine(std::string text);
+
 enum class WantedChannels { All, ColourOnly };
 
 /// readImage() proper. ColourOnly leaves out everything but R G B (or the first channel, where there is no colour)

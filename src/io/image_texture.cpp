@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
+#include <limits>
 #include <string_view>
+#include <vector>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -13,12 +14,13 @@
 #include <pellucid/base/error.h>
 
 #include "image_read.h"
+#include "png_check.h"
 
 namespace pellucid {
 namespace {
 
 [[noreturn]] void notDecodable(const std::string& reason, const std::string& where) {
-    throw Error(ErrorKind::BadInput, "the texture does not decode: " + reason, where,
+    throw Error(ErrorKind::BadInput, "the texture does not decode: " + oneLine(reason), where,
                 "store it again as PNG or JPEG");
 }
 
@@ -52,28 +54,37 @@ constexpr std::array<Magic, 8> kMagics{{
 template <class Texel, class Value>
 [[nodiscard]] Texel spread(const Value* values, int channels, Value opaque) noexcept {
     switch (channels) {
-        case 1: return {values[0], values[0], values[0], opaque};
-        case 2: return {values[0], values[0], values[0], values[1]};
-        case 3: return {values[0], values[1], values[2], opaque};
-        default: return {values[0], values[1], values[2], values[3]};
+        case 1:
+            return {values[0], values[0], values[0], opaque};
+        case 2:
+            return {values[0], values[0], values[0], values[1]};
+        case 3:
+            return {values[0], values[1], values[2], opaque};
+        default:
+            return {values[0], values[1], values[2], values[3]};
     }
 }
 
-/// Reads row by row, so that a picture never stands in memory twice.
+/// Reads by strips, so that a large picture never stands in memory twice; a strip is not small, because each call of
+/// OpenImageIO may set up tens of megabytes of its own.
 template <class Texel, class Value, class Stored>
 [[nodiscard]] bool readTexels(OIIO::ImageInput& input, OIIO::TypeDesc type, std::vector<Texel>& texels,
                               Stored (*store)(Value)) {
+    constexpr int kRows = 512;
     const OIIO::ImageSpec spec = input.spec();
     const auto width = static_cast<std::size_t>(spec.width), channels = static_cast<std::size_t>(spec.nchannels);
-    texels.resize(width * static_cast<std::size_t>(spec.height));
-    std::vector<Value> row(width * channels);
-    std::vector<Stored> stored(row.size());
-    for (int y = 0; y < spec.height; ++y) {
-        if (!input.read_scanlines(0, 0, spec.y + y, spec.y + y + 1, 0, 0, spec.nchannels, type, row.data())) return false;
-        std::transform(row.begin(), row.end(), stored.begin(), store);
-        for (std::size_t x = 0; x < width; ++x)
-            texels[static_cast<std::size_t>(y) * width + x] =
-                spread<Texel, Stored>(&stored[x * channels], spec.nchannels, std::numeric_limits<Stored>::max());
+    std::vector<Value> strip(width * channels * static_cast<std::size_t>(std::min(kRows, spec.height)));
+    texels.reserve(width * static_cast<std::size_t>(spec.height));
+    for (int y = 0; y < spec.height; y += kRows) {
+        const int end = std::min(y + kRows, spec.height);
+        if (!input.read_scanlines(0, 0, spec.y + y, spec.y + end, 0, 0, spec.nchannels, type, strip.data()))
+            return false;
+        const std::size_t count = width * static_cast<std::size_t>(end - y);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::array<Stored, 4> values{};
+            std::transform(&strip[i * channels], &strip[i * channels] + channels, values.begin(), store);
+            texels.push_back(spread<Texel, Stored>(values.data(), spec.nchannels, std::numeric_limits<Stored>::max()));
+        }
     }
     return true;
 }
@@ -87,6 +98,7 @@ template <class Texel, class Value, class Stored>
 
 std::shared_ptr<const TextureImage> decodeTexture(std::span<const std::byte> bytes, const std::string& where) {
     const char* format = formatOf(bytes, where);
+    if (isPng(bytes) && !isWholePng(bytes)) notDecodable("the PNG is not whole", where);
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     const auto input = OIIO::ImageInput::create(format);
     if (!input || input->supports("ioproxy") == 0) notDecodable(std::string("no decoder for ") + format, where);

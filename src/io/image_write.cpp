@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,11 +15,13 @@
 #include <pellucid/base/error.h>
 #include <pellucid/io/plain_file.h>
 
+#include "image_read.h"
+
 namespace pellucid {
 namespace {
 
 [[noreturn]] void cannotWrite(const std::string& reason, const std::filesystem::path& file) {
-    throw Error(ErrorKind::CannotFinish, "cannot write the image: " + reason, file.string(),
+    throw Error(ErrorKind::CannotFinish, "cannot write the image: " + oneLine(reason), file.string(),
                 "name a file in a folder that exists, may be written and has space");
 }
 

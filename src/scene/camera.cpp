@@ -66,12 +66,13 @@ CameraRay Camera::ray(const glm::vec2& film, const glm::vec2& lens) const noexce
     return result;
 }
 
-/// The pixel's value is the mean of L over its area A on the film and over the lens. With the film scaled to the plane in
-/// focus (distance F, area A F^2) and the lens point held, a film element is F^2 / cos^3 of a solid angle at the lens, so
+/// The pixel's value is the mean of L over its area A on the film and over the lens. With the film scaled to the
+/// plane in focus (distance F, area A F^2) and the lens point held, a film element is F^2 / cos^3 of a solid angle at
+/// the lens, so
 ///   I = mean over the lens of  integral L cos_x / (A cos^3(theta) d^2) dA_x,
 /// theta at the lens against the forward axis, d from the lens point to x, and for an orthographic camera, whose rays
 /// through one lens point are parallel, I = mean of integral L cos_x / (A cos(theta)) dA_x. `importance` is the factor
-/// after L cos_x: replacing L dA_x by the sum of beta f over arriving light paths gives the estimate. [Veach1997, 4.7]
+/// after L cos_x: replacing L dA_x by the sum of beta f over arriving light paths gives the estimate. [Veach1997]
 std::optional<FilmPoint> Camera::project(const glm::vec3& point, const glm::vec2& lens) const noexcept {
     const glm::vec2 disc = lensRadius_ > 0.0F ? lensRadius_ * sampleUniformDisc(lens) : glm::vec2(0.0F);
     const glm::vec3 offset = point - origin_;

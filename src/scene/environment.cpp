@@ -1,8 +1,8 @@
-/// The sampling density of a map is constant per solid angle within a texel and proportional there to the texel's mean of
-/// the interpolated radiance, a little blurred: a filter of 3/16, 10/16, 3/16 in both directions over the average channel.
-/// The exact mean of bilinear interpolation would be 1/8, 3/4, 1/8; the wider one nearly minimises the variance around a single
-/// burning texel (proportional to the root mean square), and like it reaches wherever interpolation does. Being uniform
-/// in solid angle, the density has no sin(theta) to divide by at the poles.
+/// The sampling density of a map is constant per solid angle within a texel and proportional there to the texel's
+/// mean of the interpolated radiance, a little blurred: a filter of 3/16, 10/16, 3/16 in both directions over the
+/// average channel. The exact mean of bilinear interpolation would be 1/8, 3/4, 1/8; the wider one nearly minimises
+/// the variance around a single burning texel (proportional to the root mean square), and like it reaches wherever
+/// interpolation does. Being uniform in solid angle, the density has no sin(theta) to divide by at the poles.
 #include <pellucid/scene/environment.h>
 
 #include <algorithm>
@@ -22,7 +22,8 @@ namespace {
 constexpr double kMaxCells = 8.5e6;  ///< 4096 x 2048 and a little: 68 MB of table
 constexpr std::array<double, 3> kFilter{3.0 / 16.0, 10.0 / 16.0, 3.0 / 16.0};
 
-/// Continuous texel coordinates of a direction: x in [0, width), y in [0, height]. atan2 keeps its precision at the poles.
+/// Continuous texel coordinates of a direction: x in [0, width), y in [0, height]. atan2 keeps its precision at the
+/// poles.
 struct MapPoint {
     double x, y;
 };
@@ -57,8 +58,8 @@ Environment::Environment(EnvironmentDescription description)
     buildTables();
 }
 
-/// A row's share of the sphere under interpolation is the integral of its hat function times sin(theta), in closed form;
-/// beyond the centres of the first and last rows the hat stays at 1.
+/// A row's share of the sphere under interpolation is the integral of its hat function times sin(theta), in closed
+/// form; beyond the centres of the first and last rows the hat stays at 1.
 void Environment::computeMean() {
     const int height = map_.height(), width = map_.width();
     const double h = kPiD / height;

@@ -73,21 +73,20 @@ float pointWeight(const glm::vec3& to, const glm::vec3& normal) noexcept {
 /// About the irradiance from a triangle of unit radiance times area: cos cos / d^2 with the distance kept above the
 /// size of the triangle and the cosines softened accordingly. Zero exactly where no light can arrive: behind a
 /// one-sided triangle, or with all corners below the horizon.
+/// Written without early exits: shading points differ from call to call, and a branch mispredicted costs more than all this.
 float triangleWeight(const EmissiveTriangle& t, const glm::vec3& point, const glm::vec3& normal) noexcept {
     const glm::vec3 to[3] = {t.corner[0] - point, t.corner[1] - point, t.corner[2] - point};
     const float height = -glm::dot(t.normal, to[0]);
-    if (height <= 0.0F && !t.twoSided) return 0.0F;
+    const float shining = t.twoSided ? std::fabs(height) : std::max(height, 0.0F);
     const glm::vec3 centre = (to[0] + to[1] + to[2]) * (1.0F / 3.0F);
     const float distance2 = std::max(glm::dot(centre, centre), t.area * kInvPi);
     const float inverse = 1.0F / std::sqrt(distance2);
-    const float cosLight = std::min(1.0F, (std::fabs(height) + 0.25F * t.area * inverse) * inverse);
-    float cosReceived = 1.0F;
-    if (hasHorizon(normal)) {
-        const float above = std::max(0.0F, glm::dot(normal, to[0])) + std::max(0.0F, glm::dot(normal, to[1])) +
-                            std::max(0.0F, glm::dot(normal, to[2]));
-        cosReceived = std::min(1.0F, above * (1.0F / 3.0F) * inverse);
-    }
-    return cosLight * cosReceived / distance2;
+    const float cosLight = std::min(1.0F, (shining + 0.25F * t.area * inverse) * inverse);
+    const float above = std::max(0.0F, glm::dot(normal, to[0])) + std::max(0.0F, glm::dot(normal, to[1])) +
+                        std::max(0.0F, glm::dot(normal, to[2]));
+    const float cosReceived = hasHorizon(normal) ? std::min(1.0F, above * (1.0F / 3.0F) * inverse) : 1.0F;
+    const bool dark = !t.twoSided & (height <= 0.0F);
+    return dark ? 0.0F : cosLight * cosReceived * inverse * inverse;
 }
 
 }  // namespace
@@ -97,10 +96,10 @@ float triangleWeight(const EmissiveTriangle& t, const glm::vec3& point, const gl
 struct LightChoice::Weights {
     std::array<float, kFewLights> kept;
     float sum = 0.0F;
-    int positive = 0;
+    float scale = 0.0F, floor = 0.0F;  ///< probability = scale * weight + floor where the weight is positive
 
     [[nodiscard]] float probability(float weight) const noexcept {
-        return weight > 0.0F ? (1.0F - kDefensive) * weight / sum + kDefensive / static_cast<float>(positive) : 0.0F;
+        return weight > 0.0F ? scale * weight + floor : 0.0F;
     }
 };
 
@@ -146,11 +145,16 @@ float LightChoice::weight(const Candidate& candidate, const glm::vec3& point, co
 
 LightChoice::Weights LightChoice::weigh(const glm::vec3& point, const glm::vec3& normal) const noexcept {
     Weights weights;
+    int positive = 0;
     for (std::size_t i = 0; i < flat_.size(); ++i) {
         const float w = weight(flat_[i], point, normal);
         if (i < kFewLights) weights.kept[i] = w;
         weights.sum += w;
-        weights.positive += w > 0.0F ? 1 : 0;
+        positive += w > 0.0F ? 1 : 0;
+    }
+    if (weights.sum > 0.0F) {
+        weights.scale = (1.0F - kDefensive) / weights.sum;
+        weights.floor = kDefensive / static_cast<float>(positive);
     }
     return weights;
 }

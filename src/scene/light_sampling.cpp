@@ -43,7 +43,7 @@ std::optional<SphericalTriangle> largeOnSphere(const EmissiveTriangle& t, const 
     return s;
 }
 
-/// A direction uniform in solid angle within the spherical triangle. [Arvo1995, Fig. 3]
+/// A direction uniform in solid angle within the spherical triangle. [Arvo1995]
 glm::dvec3 sampleSphericalTriangle(const SphericalTriangle& s, const glm::dvec2& u) noexcept {
     const double cosAB = glm::dot(s.a, s.b);
     // The angle at A, by its sine and cosine times |a x b| |a x c|.

@@ -16,7 +16,7 @@ constexpr int kBins = 12;
 constexpr int kMaxUnbalancedDepth = 48;  ///< below it ranges are halved, so that the depth stays near 48 + log2 n
 constexpr double kSlack = 1e-4;          ///< radians added to joined cones against rounding: bounds must hold
 
-/// The smallest cone around two cones of half angles `a.spread`, `b.spread`. [ContyEstevezKulla2018, Alg. 1]
+/// The smallest cone around two cones of half angles `a.spread`, `b.spread`. [ContyEstevezKulla2018]
 void joinCones(LightBounds& a, const LightBounds& b) noexcept {
     glm::dvec3 axisA(a.axis), axisB(b.axis);
     if (a.twoSided && b.twoSided && glm::dot(axisA, axisB) < 0.0) axisB = -axisB;
@@ -53,7 +53,7 @@ void join(LightBounds& a, const LightBounds& b) noexcept {
 }
 
 /// Strength times size times the measure of directions: the surface area orientation heuristic, with the squared
-/// diagonal for the area, which does not vanish for lights in a row. [ContyEstevezKulla2018, eq. 1]
+/// diagonal for the area, which does not vanish for lights in a row. [ContyEstevezKulla2018]
 double cost(const LightBounds& b) noexcept {
     const double o = b.spread, w = std::min(o + b.emission, kPiD);
     const double directions =
@@ -182,7 +182,7 @@ LightTree::LightTree(std::span<const LightBounds> lights) : leafOf_(lights.size(
 }
 
 /// Strength cos(theta') cos(theta_i') / d^2 with both angles lessened by what the node's size and spread may take off
-/// them. [ContyEstevezKulla2018, eq. 3] The distance is softened, d^2 + r^2 / 4, rather than clamped: among ten
+/// them. [ContyEstevezKulla2018] The distance is softened, d^2 + r^2 / 4, rather than clamped: among ten
 /// thousand lights around the point the deviation of the estimate falls to between a third and three quarters.
 float LightTree::importance(const Node& node, const glm::vec3& point, const glm::vec3& normal) noexcept {
     const glm::vec3 to = node.centre - point;

@@ -1,8 +1,11 @@
 #include <pellucid/scene/scene.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include <pellucid/base/error.h>
 #include <pellucid/math/hash.h>
@@ -88,6 +91,9 @@ struct Scene::Impl {
     std::unique_ptr<Lights> lights;
     std::vector<bool> hasAlpha;  ///< by material
     bool anyAlpha = false;
+    /// By geometry and primitive: one of two faces of the same glass that coincide. Rays pass: there is no interface.
+    std::vector<std::vector<bool>> merged;
+    bool anyMerged = false;
     std::uint64_t triangleCount = 0;
     LobeKinds kinds = kNoLobe;
     std::string hash;
@@ -98,6 +104,10 @@ struct Scene::Impl {
     void addEmissive(Lights::Parts& parts) const;
     void buildLights();
     void scaleMaterials();
+    void mergeCoincidentGlass();
+    [[nodiscard]] bool isMerged(const SurfacePoint& p) const noexcept {
+        return anyMerged && !merged[p.geometry].empty() && merged[p.geometry][p.primitive];
+    }
 };
 
 std::array<glm::vec3, 3> Scene::Impl::corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
@@ -229,6 +239,45 @@ void Scene::Impl::buildLights() {
         this);
 }
 
+namespace {
+
+/// Whether light crosses from one body to the other as within one.
+[[nodiscard]] bool sameGlass(const Material& a, const Material& b) noexcept {
+    return a.ior == b.ior && a.absorption == b.absorption && a.transmission >= 1.0F && b.transmission >= 1.0F;
+}
+
+}  // namespace
+
+/// Finds pairs of triangles of volume glass with the same three corners that face each other.
+void Scene::Impl::mergeCoincidentGlass() {
+    using Key = std::array<float, 9>;
+    std::map<Key, std::pair<std::uint32_t, std::uint32_t>> open;
+    merged.resize(description.geometries.size());
+    for (std::uint32_t g = 0; g < description.geometries.size(); ++g) {
+        const Mesh& mesh = description.meshes[description.geometries[g].mesh];
+        const Material& material = description.materials[mesh.material];
+        if (!(material.transmission > 0.0F && material.thickness > 0.0F)) continue;
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+            auto c = corners(g, i);
+            std::sort(c.begin(), c.end(), [](const glm::vec3& a, const glm::vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
+            const Key key{c[0].x, c[0].y, c[0].z, c[1].x, c[1].y, c[1].z, c[2].x, c[2].y, c[2].z};
+            const auto [it, fresh] = open.try_emplace(key, g, i);
+            if (fresh) continue;
+            const auto [g2, i2] = it->second;
+            const Material& other = description.materials[description.meshes[description.geometries[g2].mesh].material];
+            const glm::vec3 n = surfacePoint({g, i, 0.3F, 0.3F, 0.0F}).geometricNormal, n2 = surfacePoint({g2, i2, 0.3F, 0.3F, 0.0F}).geometricNormal;
+            if (glm::dot(n, n2) >= 0.0F || !sameGlass(material, other)) continue;
+            for (const auto& [geometry, primitive] : {std::pair(g, i), std::pair(g2, i2)}) {
+                auto& flags = merged[geometry];
+                flags.resize(description.meshes[description.geometries[geometry].mesh].triangles.size(), false);
+                flags[primitive] = true;
+            }
+            anyMerged = true;
+            open.erase(it);
+        }
+    }
+}
+
 /// Beer's coefficients are per metre in the file and per normalised unit from here on.
 void Scene::Impl::scaleMaterials() {
     for (Material& m : description.materials) m.absorption *= static_cast<float>(1.0 / normalisation.scale());
@@ -265,6 +314,7 @@ Scene::Scene(SceneDescription description, std::optional<EnvironmentDescription>
             logTo(log, LogLevel::Warning, std::to_string(environment->mendedTexels) + " texels of the environment were negative or not finite and count as 0");
         if (s.environment->black()) s.environment.reset();
     }
+    s.mergeCoincidentGlass();
     s.buildLights();
     if (options.requireLight && (s.lights->count() == 0 || !(s.lights->totalPower() > 0.0)))
         throw Error(ErrorKind::BadInput, "the scene has no light", s.description.name,
@@ -288,8 +338,9 @@ std::optional<SurfaceHit> Scene::intersect(const Ray& ray, float coin) const noe
     RawHit raw;
     while (s.accel->intersect(current, raw)) {
         SurfaceHit hit{s.surfacePoint(raw), travelled + raw.t};
-        if (!s.hasAlpha[hit.point.material]) return hit;
-        const float coverage = s.surfaces->coverage(hit.point);
+        const bool passes = s.isMerged(hit.point);
+        if (!passes && !s.hasAlpha[hit.point.material]) return hit;
+        const float coverage = passes ? 0.0F : s.surfaces->coverage(hit.point);
         if (coin < coverage) return hit;
         coin = std::min((coin - coverage) / std::max(1.0F - coverage, 1e-12F), 0x1.fffffep-1F);
         const glm::vec3 n = glm::dot(hit.point.geometricNormal, ray.direction) < 0.0F ? -hit.point.geometricNormal : hit.point.geometricNormal;
@@ -302,14 +353,15 @@ std::optional<SurfaceHit> Scene::intersect(const Ray& ray, float coin) const noe
 
 float Scene::visibility(const Ray& ray) const noexcept {
     const Impl& s = *impl_;
-    if (!s.anyAlpha) return s.accel->occluded(ray) ? 0.0F : 1.0F;
+    if (!s.anyAlpha && !s.anyMerged) return s.accel->occluded(ray) ? 0.0F : 1.0F;
     Ray current = ray;
     float transmittance = 1.0F;
     RawHit raw;
     while (transmittance > 0.0F && s.accel->intersect(current, raw)) {
         const SurfacePoint p = s.surfacePoint(raw);
-        if (!s.hasAlpha[p.material]) return 0.0F;
-        transmittance *= 1.0F - s.surfaces->coverage(p);
+        const bool passes = s.isMerged(p);
+        if (!passes && !s.hasAlpha[p.material]) return 0.0F;
+        if (!passes) transmittance *= 1.0F - s.surfaces->coverage(p);
         const glm::vec3 n = glm::dot(p.geometricNormal, ray.direction) < 0.0F ? -p.geometricNormal : p.geometricNormal;
         current.origin = offsetOrigin(p.position, n);
         current.tMax -= raw.t;

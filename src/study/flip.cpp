@@ -24,7 +24,7 @@ constexpr float kColourKneeValue = 0.95F;  // p_t
 constexpr float kFeatureExponent = 0.5F;   // q_f
 constexpr float kFeatureWidth = 0.082F;    // w, degrees
 
-// ---- contrast sensitivity ([Andersson2020] section 4.1.1, table 1) -----------------------------------------------
+// ---- contrast sensitivity ([Andersson2020], spatial filtering) ------------------------------------------------------
 
 /// One Gaussian of a channel's filter: a sqrt(pi/b) exp(-pi^2 x^2 / b), x in degrees.
 struct SensitivityTerm {
@@ -74,7 +74,7 @@ struct Filters {
     std::array<SensitivityFilter, 3> sensitivity{sensitivityFilter({{1.0F, 0.0047F}}),
                                                  sensitivityFilter({{1.0F, 0.0053F}}),
                                                  sensitivityFilter({{34.1F, 0.04F}, {13.5F, 0.025F}})};
-    /// A Gaussian and its first and second derivative: edge and point detectors (section 4.2).
+    /// A Gaussian and its first and second derivative: edge and point detectors.
     Kernel smooth, edge, point;
 
     Filters() {
@@ -135,7 +135,7 @@ const glm::vec3 kWhite{0.9504559F, 1.0F, 1.0890578F};
     return std::pow(std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z), kColourExponent);
 }
 
-/// Maps distances to [0, 1]: the lower part of the range takes nearly all of it (section 4.1.3).
+/// Maps distances to [0, 1]: the lower part of the range takes nearly all of it.
 [[nodiscard]] float redistribute(float distance) noexcept {
     static const float largest = colourDistance(toHuntLab({0.0F, 1.0F, 0.0F}), toHuntLab({0.0F, 0.0F, 1.0F}));
     const float knee = kColourKnee * largest;
@@ -180,7 +180,7 @@ struct Percept {
     return percept;
 }
 
-/// LDR-FLIP of one pixel: colour error raised where features differ, dE = dEc^(1 - dEf) (section 4.3).
+/// LDR-FLIP of one pixel: colour error raised where features differ, dE = dEc^(1 - dEf).
 [[nodiscard]] float flipError(const Percept& a, const Percept& b, std::size_t i) noexcept {
     const float colour = redistribute(colourDistance(a.colour[i], b.colour[i]));
     const float difference = std::max(std::abs(a.edges[i] - b.edges[i]), std::abs(a.points[i] - b.points[i]));
@@ -188,7 +188,7 @@ struct Percept {
     return std::clamp(std::pow(colour, 1.0F - feature), 0.0F, 1.0F);
 }
 
-// ---- exposures ([Andersson2021] section 3) -----------------------------------------------------------------------
+// ---- exposures ([Andersson2021]) ------------------------------------------------------------------------------------
 
 /// The ACES curve as fitted by K. Narkowicz (2015), with its exposure of 0.6: (x (p2 x + p1)) / (x (q2 x + q1) + q0).
 struct ToneCurve {

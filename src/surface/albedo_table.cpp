@@ -27,8 +27,9 @@ double curve(float cosTheta, float eta) noexcept {
     return eta < 0.0F ? 1.0 : std::max(0.0, static_cast<double>(fresnelCurve(cosTheta, eta)));
 }
 
-/// The line e0 + e1 s of least mean over the hemisphere (int s 2c dc = 1/21) that no point exceeds. For a given slope e1 the
-/// offset follows, and the mean is convex in e1: golden section. Slopes that would pass 1 at grazing are left out.
+/// The line e0 + e1 s of least mean over the hemisphere (int s 2c dc = 1/21) that no point exceeds. For a given slope
+/// e1 the offset follows, and the mean is convex in e1: golden section. Slopes that would pass 1 at grazing are left
+/// out.
 AlbedoBound boundFrom(const std::vector<CurvePoint>& points) {
     double steepest = 1.0;
     for (const CurvePoint& p : points)
@@ -43,7 +44,8 @@ AlbedoBound boundFrom(const std::vector<CurvePoint>& points) {
     double low = 0.0, high = steepest;
     for (int i = 0; i < 24; ++i) {
         const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-        (offset(a) + a / 21.0 < offset(b) + b / 21.0 ? high : low) = offset(a) + a / 21.0 < offset(b) + b / 21.0 ? b : a;
+        (offset(a) + a / 21.0 < offset(b) + b / 21.0 ? high : low) =
+            offset(a) + a / 21.0 < offset(b) + b / 21.0 ? b : a;
     }
     const double e1 = 0.5 * (low + high);
     const double e0 = std::min(offset(e1) + kMargin, 1.0 - e1);

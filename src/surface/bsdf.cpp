@@ -77,7 +77,8 @@ BsdfValue Bsdf::evaluate(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kin
     BsdfValue sum;
     if ((kinds_ & kinds) == kNoLobe) return sum;
     const glm::vec3 localO = frame_.toLocal(wo), localI = frame_.toLocal(wi);
-    if (localO.z > 0.0F && sameSide(localO, wo) && sameSide(localI, wi)) evaluateLocal(localO, localI, kinds, mode, sum);
+    if (localO.z > 0.0F && sameSide(localO, wo) && sameSide(localI, wi))
+        evaluateLocal(localO, localI, kinds, mode, sum);
     return sum;
 }
 

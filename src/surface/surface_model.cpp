@@ -89,7 +89,8 @@ CoatTerms coatTerms(const Material& m, const Resolved& r, const LobeRules& rules
     return terms;
 }
 
-/// The interpolated normal turned by the normal map. glTF: the map's x and y are scaled, then the vector is made unit again.
+/// The interpolated normal turned by the normal map. glTF: the map's x and y are scaled, then the vector is made unit
+/// again.
 glm::vec3 mappedNormal(const Material& m, const SurfacePoint& point) noexcept {
     const glm::vec3& n = point.shadingNormal;
     const glm::vec3 tangent = point.tangent - n * glm::dot(n, point.tangent);
@@ -141,10 +142,10 @@ LobeKinds kindsOf(const Material& m, const LobeRules& rules) noexcept {
 
 struct SurfaceModel::Prepared {
     LobeKinds kinds = kNoLobe;
-    bool textured = false;   ///< any texture that changes the lobes
-    std::size_t table = 0;   ///< of the coat's ior
+    bool textured = false;  ///< any texture that changes the lobes
+    std::size_t table = 0;  ///< of the coat's ior
     Resolved factors;
-    CoatTerms coat;          ///< of the factors alone
+    CoatTerms coat;  ///< of the factors alone
 };
 
 SurfaceModel::SurfaceModel(const std::vector<Material>& materials, const LobeRules& rules)
@@ -156,8 +157,8 @@ SurfaceModel::SurfaceModel(const std::vector<Material>& materials, const LobeRul
         p.textured = m.baseColorTexture || m.metallicRoughnessTexture || m.specularTexture || m.specularColorTexture ||
                      m.transmissionTexture;
         p.factors = resolveFactors(m);
-        const bool opaqueDielectric = (m.metallic < 1.0F || m.metallicRoughnessTexture) &&
-                                      (m.transmission < 1.0F || m.transmissionTexture);
+        const bool opaqueDielectric =
+            (m.metallic < 1.0F || m.metallicRoughnessTexture) && (m.transmission < 1.0F || m.transmissionTexture);
         if (opaqueDielectric && coats(m)) {
             p.table = tables_->add(m.ior);
             p.coat = coatTerms(m, p.factors, rules_, *tables_, p.table);
@@ -178,7 +179,8 @@ Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo) const no
     Resolved r = prepared.textured ? resolve(m, point) : prepared.factors;
     r.baseColor = glm::min(r.baseColor * Rgb{point.color}, Rgb{1.0F});
 
-    const float metal = r.metallic, glass = (1.0F - metal) * r.transmission, opaque = (1.0F - metal) * (1.0F - r.transmission);
+    const float metal = r.metallic, glass = (1.0F - metal) * r.transmission,
+                opaque = (1.0F - metal) * (1.0F - r.transmission);
     const bool backSide = glm::dot(wo, point.geometricNormal) < 0.0F;
     Bsdf result(Frame(normalFor(m, point, wo, backSide)), backSide ? -point.geometricNormal : point.geometricNormal,
                 backSide, isVolume(m) && glass > 0.0F);

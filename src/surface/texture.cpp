@@ -63,9 +63,9 @@ const std::array<float, 256>& decodedCodes() noexcept {
 
 [[nodiscard]] glm::vec4 texel(const TextureRef& texture, int x, int y) noexcept {
     const TextureImage& image = *texture.image;
-    const std::size_t index = static_cast<std::size_t>(wrapped(y, image.height, texture.wrapT)) *
-                                  static_cast<std::size_t>(image.width) +
-                              static_cast<std::size_t>(wrapped(x, image.width, texture.wrapS));
+    const std::size_t index =
+        static_cast<std::size_t>(wrapped(y, image.height, texture.wrapT)) * static_cast<std::size_t>(image.width) +
+        static_cast<std::size_t>(wrapped(x, image.width, texture.wrapS));
     return image.texels8.empty() ? decode16(image.texels16[index], texture.srgb)
                                  : decode8(image.texels8[index], texture.srgb);
 }

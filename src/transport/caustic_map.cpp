@@ -18,7 +18,7 @@ struct KernelSum {
     glm::vec3 point, normal, shadingNormal;
     const DiffuseLobe& lobe;
     float radius2;
-    Rgb sum{0.0F};
+    glm::dvec3 sum{0.0};
 
     void init() noexcept {}
     [[nodiscard]] std::size_t size() const noexcept { return 0; }
@@ -32,7 +32,7 @@ struct KernelSum {
         if (height * height > kMaxPlaneDistance * kMaxPlaneDistance * radius2) return true;
         float weight = 1.0F - distance2 / radius2;
         if (lobe.b != 0.0F) weight *= lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal)));
-        sum += p.flux * weight;
+        sum += glm::dvec3(p.flux * weight);
         return true;
     }
 };
@@ -56,7 +56,7 @@ Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNor
                            const DiffuseLobe& lobe, float radius) const noexcept {
     KernelSum result{impl_->photons, point, geometricNormal, shadingNormal, lobe, radius * radius};
     impl_->tree.search(point, result);
-    return result.sum * (2.0F / (kPi * radius * radius));
+    return Rgb(result.sum * (2.0 / (kPiD * static_cast<double>(radius) * static_cast<double>(radius))));
 }
 
 std::size_t CausticMap::size() const noexcept { return impl_->photons.size(); }

@@ -40,6 +40,12 @@ EmissionGuide::EmissionGuide(const Lights& lights, const std::vector<UsefulEmiss
         total += static_cast<double>(e.weight);
     }
     const double power = lights.totalPower();
+    // One item of mean weight for each light, shared by power: among many small lights the evidence on each is thin.
+    if (total > 0.0) {
+        const double prior = total / static_cast<double>(useful.size()) * static_cast<double>(count);
+        for (std::uint32_t l = 0; l < count; ++l) useful1[l] += prior * (power > 0.0 ? lights.power(l) / power : 1.0 / static_cast<double>(count));
+        total += prior;
+    }
     const double unguided = total > 0.0 ? static_cast<double>(kUniformShare) : 1.0;
     double sum = 0.0;
     for (std::uint32_t l = 0; l < count; ++l) {

@@ -32,13 +32,17 @@ struct Grid {
 /// Rotational: dE = sum_k v(phi_k + pi/2) sum_j tan(theta_j) L_jk pi/(MN).
 void addRotation(Grid& g, const Frame& frame, IrradianceRecord& record) {
     const float norm = kPi / static_cast<float>(g.elevations * g.azimuths);
+    // The stratum's mean of tan(theta) over s = sin^2: int sqrt(s / (1 - s)) ds = asin(sqrt s) - sqrt(s (1 - s)).
+    const auto meanTan = [m = static_cast<float>(g.elevations)](int border) {
+        const float s = static_cast<float>(border) / m;
+        return m * (std::asin(std::sqrt(s)) - std::sqrt(s * (1.0F - s)));
+    };
     for (int k = 0; k < g.azimuths; ++k) {
         const float phi = kTwoPi * (static_cast<float>(k) + 0.5F) / static_cast<float>(g.azimuths);
         const glm::vec3 v = frame.toWorld({-std::sin(phi), std::cos(phi), 0.0F});
         Rgb sum(0.0F);
         for (int j = 0; j < g.elevations; ++j) {
-            const float sin2 = (static_cast<float>(j) + 0.5F) / static_cast<float>(g.elevations);
-            sum += std::sqrt(sin2 / (1.0F - sin2)) * g.at(j, k).radiance;
+            sum += (meanTan(j + 1) - meanTan(j)) * g.at(j, k).radiance;
         }
         for (glm::length_t c = 0; c < 3; ++c) record.rotation[static_cast<std::size_t>(c)] += v * (sum[c] * norm);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pellucid {
 
@@ -104,18 +105,33 @@ void IrradianceCache::insert(IrradianceRecord record) {
     index(static_cast<std::uint32_t>(records_.size() - 1), reach);
 }
 
+/// Ward's error of `record` at a point; infinite where it may not speak. [Ward1988]
+static float wardError(const IrradianceRecord& r, const glm::vec3& offset, const glm::vec3& normal, float limit) noexcept {
+    constexpr float kSilent = std::numeric_limits<float>::infinity();
+    const float distance2 = glm::dot(offset, offset);
+    const float reach = limit * r.radius;
+    if (distance2 >= reach * reach) return kSilent;
+    if (glm::dot(offset, normal + r.normal) < -2.0F * kBehind * r.radius) return kSilent;
+    const float error = std::sqrt(distance2) / r.radius + std::sqrt(std::max(0.0F, 1.0F - glm::dot(normal, r.normal)));
+    return error < limit ? error : kSilent;
+}
+
+bool IrradianceCache::covers(const glm::vec3& position, const glm::vec3& normal, float limit) const noexcept {
+    bool covered = false;
+    forNear(position, [&](std::uint32_t i) {
+        covered = covered || wardError(records_[i], position - records_[i].position, normal, limit) < limit;
+    });
+    return covered;
+}
+
 std::optional<Irradiance> IrradianceCache::lookup(const glm::vec3& position, const glm::vec3& normal) const noexcept {
     Irradiance sum;
     float weights = 0.0F;
     forNear(position, [&](std::uint32_t i) {
         const IrradianceRecord& r = records_[i];
         const glm::vec3 offset = position - r.position;
-        const float distance2 = glm::dot(offset, offset);
-        const float reach = error_ * r.radius;
-        if (distance2 >= reach * reach) return;
-        const float error = std::sqrt(distance2) / r.radius + std::sqrt(std::max(0.0F, 1.0F - glm::dot(normal, r.normal)));
+        const float error = wardError(r, offset, normal, error_);
         if (error >= error_) return;
-        if (glm::dot(offset, normal + r.normal) < -2.0F * kBehind * r.radius) return;
         // Falls to zero where the record stops to speak: no seam at its border.
         const float weight = 1.0F / std::max(error, 1e-4F) - 1.0F / error_;
         const Rgb e = extrapolate(r, offset, normal);

@@ -16,7 +16,7 @@ namespace pellucid::light_path {
 inline constexpr std::size_t kPathsPerChunk = 2048;
 inline constexpr std::uint64_t kEmissionDimensions = 5, kDimensionsPerVertex = 4;
 inline constexpr int kCertainVertices = 64;
-inline constexpr float kSurvivalBeyond = 0.995F;
+inline constexpr float kSurvivalBeyond = 0.9995F;
 /// Light that grazes the true surface this flatly is dropped: its correction for shading normals would explode.
 inline constexpr float kMinGeometricCosine = 0.01F;
 

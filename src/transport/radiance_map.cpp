@@ -90,7 +90,7 @@ struct NearestPoint {
         if (!light || !(light->pdfSolidAngle > 0.0F)) continue;
         const float cosine = glm::dot(light->wi, p.shadingNormal);
         if (cosine <= 0.0F || glm::dot(light->wi, p.normal) <= 0.0F) continue;
-        Ray shadow{offsetOrigin(p.position, p.normal), light->wi, shadowLength(light->distance)};
+        const Ray shadow = shadowRay(p.position, p.normal, light->wi, light->distance);
         const float visible = shadow.tMax > 0.0F ? scene.visibility(shadow) : 1.0F;
         if (visible > 0.0F) sum += light->radiance * (visible * cosine * p.lobe.transmittance(cosine) / light->pdfSolidAngle);
     }

@@ -13,7 +13,7 @@ namespace {
 
 /// Roulette never keeps a path for certain beyond this many vertices, so that closed rooms of albedo 1 end.
 constexpr int kCertainVertices = 64;
-constexpr float kSurvivalBeyond = 0.995F;
+constexpr float kSurvivalBeyond = 0.9995F;
 /// Sampler dimensions: 0 film, 1 lens, then this many a vertex.
 constexpr std::uint64_t kFirstDimension = 2, kDimensionsPerVertex = 8;
 enum VertexDimension : std::uint64_t { kCoin, kLightChoice, kLightPoint, kLobeChoice, kLobePoint, kKindChoice, kRoulette, kCorner };
@@ -149,10 +149,7 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     const Rgb total = sum.total();
     if (isBlack(total)) return;
     const glm::vec3& ng = vertex.bsdf.geometricNormal();
-    Ray shadow;
-    shadow.origin = offsetOrigin(position, glm::dot(light->wi, ng) >= 0.0F ? ng : -ng);
-    shadow.direction = light->wi;
-    shadow.tMax = shadowLength(light->distance);
+    const Ray shadow = shadowRay(position, glm::dot(light->wi, ng) >= 0.0F ? ng : -ng, light->wi, light->distance);
     ++rays_;
     const float visible = shadow.tMax > 0.0F ? context_.scene.visibility(shadow) : 1.0F;
     if (visible <= 0.0F) return;

@@ -129,8 +129,8 @@ void expectSamplesFollowPdf(const std::vector<Material>& list, const std::vector
             SphereGrid grid = narrow != nullptr ? *narrow : SphereGrid{};
             if (narrow != nullptr) grid.axis = {-wo.x, -wo.y, wo.z};
             const auto result = chiSquareOf(bsdf, wo, kAllLobes, grid, ++seed);
-            EXPECT_GT(result.pValue, testing::sidakLevel(tests)) << list[m].name << " cos " << cosine << " mass "
-                                                                 << result.mass << " lost " << result.lost;
+            EXPECT_GT(result.pValue, testing::sidakLevel(tests))
+                << list[m].name << " cos " << cosine << " mass " << result.mass << " lost " << result.lost;
             EXPECT_LT(result.mass, 1.0 + 1e-3) << list[m].name << ' ' << cosine;
             EXPECT_NEAR(result.mass, 1.0 - result.lost, 0.01) << list[m].name << ' ' << cosine;
         }
@@ -139,7 +139,8 @@ void expectSamplesFollowPdf(const std::vector<Material>& list, const std::vector
 TEST(BsdfChiSquare, WideLobesFromBothSides) {
     std::vector<Material> list{lambert(), dielectric("coat", 0.0F)};
     for (const float r : {0.3F, 0.6F, 1.0F})
-        for (const Material& m : {dielectric("coat", r), metal(r), body(r), thin(r), everything(r, 0.0F), everything(r, 1.0F)})
+        for (const Material& m :
+             {dielectric("coat", r), metal(r), body(r), thin(r), everything(r, 0.0F), everything(r, 1.0F)})
             list.push_back(m);
     for (const float ior : {0.67F, 1.01F, 4.0F}) list.push_back(body(0.6F, ior));
     expectSamplesFollowPdf(list, {1.0F, 0.7F, 0.1F, -0.02F, -0.6F, -1.0F}, 0.0F, nullptr);
@@ -152,7 +153,8 @@ TEST(BsdfChiSquare, LeaningShadingNormal) {
 
 TEST(BsdfChiSquare, NarrowReflections) {
     const SphereGrid narrow{{}, 3.0, 32, 16};
-    expectSamplesFollowPdf({metal(0.04F), metal(0.1F), dielectric("coat", 0.1F)}, {1.0F, 0.6F, 0.05F, -0.3F}, 0.0F, &narrow);
+    expectSamplesFollowPdf({metal(0.032F), metal(0.1F), dielectric("coat", 0.1F)}, {1.0F, 0.6F, 0.05F, -0.3F}, 0.0F,
+                           &narrow);
 }
 
 TEST(BsdfChiSquare, NarrowRefraction) {
@@ -210,12 +212,12 @@ TEST(Bsdf, WeightIsValueOverPdf) {
         }
 }
 
-/// Integral of eval over the sphere plus what the delta lobes return, in the channel that reflects most.
-double furnace(const Bsdf& bsdf, const glm::vec3& wo, TransportMode mode) {
+/// Integral of eval over the sphere plus what the delta lobes return, in the first `channels`' most reflecting one.
+double furnace(const Bsdf& bsdf, const glm::vec3& wo, TransportMode mode, int channels = 3) {
     const SphereGrid grid{{-wo.x, -wo.y, wo.z}, 2.0, 16, 16};
     const Frame frame(grid.axis);
     glm::dvec3 sum{0.0};
-    for (int channel = 0; channel < 3; ++channel)
+    for (int channel = 0; channel < channels; ++channel)
         for (int i = 0; i < grid.thetas; ++i)
             for (int j = 0; j < grid.phis; ++j) {
                 const testing::detail::Cell cell{i / 16.0, (i + 1) / 16.0, j * kPiD / 8.0, (j + 1) * kPiD / 8.0};
@@ -225,7 +227,7 @@ double furnace(const Bsdf& bsdf, const glm::vec3& wo, TransportMode mode) {
                 sum[channel] += testing::detail::integrate(grid, frame, value, cell,
                                                            testing::detail::gauss4x4(grid, frame, value, cell), 0);
             }
-    constexpr int kSteps = 20000;
+    constexpr int kSteps = 20000;  // of the choice of a lobe
     for (int i = 0; i < kSteps; ++i) {
         const auto s = bsdf.sample(wo, (static_cast<float>(i) + 0.5F) / kSteps, {0.5F, 0.5F}, kAllLobes, mode);
         if (s && s->delta) sum += glm::dvec3{s->weight} / static_cast<double>(kSteps);
@@ -255,13 +257,12 @@ TEST(BsdfFurnace, CoatOverWhiteLosesLittle) {
         for (int i = 0; i < 16; ++i) {
             const float cosine = std::sqrt((static_cast<float>(i) + 0.5F) / 16.0F);
             const glm::vec3 wo = direction(cosine);
-            const double energy = furnace(model.bsdf(pointOf(m), wo), wo, TransportMode::Radiance);
+            const double energy = furnace(model.bsdf(pointOf(m), wo), wo, TransportMode::Radiance, 1);
             EXPECT_LE(energy, 1.0 + 1e-4) << list[m].name << ' ' << cosine;
             mean += energy / 16.0;
         }
         EXPECT_GE(mean, leastMean[m]) << list[m].name;
-        ::testing::Test::RecordProperty(list[m].name, std::to_string(mean));
-        std::printf("%s mean furnace %.5f\n", list[m].name.c_str(), mean);
+        RecordProperty("meanFurnace" + std::to_string(m), std::to_string(mean));
     }
 }
 
@@ -277,7 +278,7 @@ TEST(BsdfFurnace, CoatOverAnythingOverRoughnessAndColour) {
         for (const float cosine : {0.95F, 0.35F, 0.08F}) {
             const glm::vec3 wo = direction(cosine);
             const Bsdf bsdf = model.bsdf(pointOf(m), wo);
-            EXPECT_LE(furnace(bsdf, wo, TransportMode::Radiance), 1.0 + 1e-4) << list[m].name << ' ' << cosine;
+            EXPECT_LE(furnace(bsdf, wo, TransportMode::Radiance, 1), 1.0 + 1e-4) << list[m].name << ' ' << cosine;
             for (int i = 0; i <= 20; ++i) EXPECT_GE(bsdf.diffuse().transmittance(static_cast<float>(i) / 20.0F), 0.0F);
         }
 }
@@ -316,11 +317,13 @@ TEST(Bsdf, Reciprocity) {
         for (int i = 0; i < 4000; ++i) {
             const glm::vec3 a = randomDirection(random), b = randomDirection(random);
             const Bsdf bsdfA = model.bsdf(pointOf(m), a), bsdfB = model.bsdf(pointOf(m), b);
-            const float etaA = volume && a.z < 0.0F ? list[m].ior : 1.0F, etaB = volume && b.z < 0.0F ? list[m].ior : 1.0F;
+            const float etaA = volume && a.z < 0.0F ? list[m].ior : 1.0F,
+                        etaB = volume && b.z < 0.0F ? list[m].ior : 1.0F;
             const Rgb ab = bsdfA.eval(a, b, kAllLobes, TransportMode::Radiance) / (std::fabs(b.z) * etaA * etaA);
             const Rgb ba = bsdfB.eval(b, a, kAllLobes, TransportMode::Radiance) / (std::fabs(a.z) * etaB * etaB);
             // Close to a critical angle the two sides round Fresnel's steep end differently.
-            EXPECT_LE(maxComponent(glm::abs(ab - ba)), 5e-3F * (maxComponent(ab) + 1e-3F)) << list[m].name << ' ' << a.z << ' ' << b.z;
+            EXPECT_LE(maxComponent(glm::abs(ab - ba)), 5e-3F * (maxComponent(ab) + 1e-3F))
+                << list[m].name << ' ' << a.z << ' ' << b.z;
             compared += isBlack(ab) ? 0 : 1;
         }
         if (list[m].name == lambert().name) {
@@ -332,12 +335,14 @@ TEST(Bsdf, Reciprocity) {
 TEST(Bsdf, NothingIsEverNotFinite) {
     std::vector<Material> list = materials();
     for (const float r : {0.0316228F, 0.0317F, 0.04F})
-        for (const Material& m : {dielectric("coat", r), metal(r), body(r), body(r, 1.001F), thin(r), everything(r, 1.0F)})
+        for (const Material& m :
+             {dielectric("coat", r), metal(r), body(r), body(r, 1.001F), thin(r), everything(r, 1.0F)})
             list.push_back(m);
     const SurfaceModel model(list, {});
     std::mt19937_64 random(17);
-    const std::vector<glm::vec3> special{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, direction(1e-4F),
-                                         direction(-1e-4F), direction(1e-7F), direction(1e-20F), direction(-1e-38F)};
+    const std::vector<glm::vec3> special{{0, 0, 1},         {0, 0, -1},        {1, 0, 0},         {-1, 0, 0},
+                                         {0, -1, 0},        direction(1e-4F),  direction(-1e-4F), direction(1e-7F),
+                                         direction(1e-20F), direction(-1e-38F)};
     const auto pick = [&] { return random() % 3 == 0 ? special[random() % special.size()] : randomDirection(random); };
     for (std::uint32_t m = 0; m < list.size(); ++m)
         for (int i = 0; i < 5000; ++i) {
@@ -348,12 +353,16 @@ TEST(Bsdf, NothingIsEverNotFinite) {
             const Bsdf bsdf = model.bsdf(pointOf(m, i % 2 == 0 ? 0.0F : 0.3F), wo);
             const TransportMode mode = kModes[i % 2];
             const BsdfValue value = bsdf.evaluate(wo, wi, kAllLobes, mode);
-            ASSERT_TRUE(isFinite(value.value) && std::isfinite(value.pdfSolidAngle)) << list[m].name << ' ' << wo.z << ' ' << wi.z;
-            ASSERT_TRUE(value.pdfSolidAngle >= 0.0F && glm::all(glm::greaterThanEqual(value.value, Rgb{0.0F}))) << list[m].name;
-            const glm::vec2 u = i % 5 == 0 ? glm::vec2{kOneMinusEpsilon * static_cast<float>(i % 2), kOneMinusEpsilon} : uniform2(random);
+            ASSERT_TRUE(isFinite(value.value) && std::isfinite(value.pdfSolidAngle))
+                << list[m].name << ' ' << wo.z << ' ' << wi.z;
+            ASSERT_TRUE(value.pdfSolidAngle >= 0.0F && glm::all(glm::greaterThanEqual(value.value, Rgb{0.0F})))
+                << list[m].name;
+            const glm::vec2 u = i % 5 == 0 ? glm::vec2{kOneMinusEpsilon * static_cast<float>(i % 2), kOneMinusEpsilon}
+                                           : uniform2(random);
             const auto s = bsdf.sample(wo, i % 7 == 0 ? kOneMinusEpsilon : uniform(random), u, kAllLobes, mode);
             if (!s) continue;
-            ASSERT_TRUE(isFinite(s->weight) && isFinite(s->wi) && std::isfinite(s->pdfSolidAngle)) << list[m].name << ' ' << wo.z;
+            ASSERT_TRUE(isFinite(s->weight) && isFinite(s->wi) && std::isfinite(s->pdfSolidAngle))
+                << list[m].name << ' ' << wo.z;
             ASSERT_TRUE(glm::all(glm::greaterThanEqual(s->weight, Rgb{0.0F}))) << list[m].name;
             ASSERT_LT(maxComponent(s->weight) * s->etaScale, 30.0F) << list[m].name << ' ' << wo.z;
         }

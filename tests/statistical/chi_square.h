@@ -1,6 +1,6 @@
-/// Pearson's chi^2 test of a sampling function against its density on the sphere: the density is integrated adaptively over a
-/// theta-phi grid, cells that expect little are pooled, and what sampling loses must match what the density lacks to 1. Each
-/// test is at level 1 % over all the tests that a caller declares (Sidak). [Jakob2010chi2]
+/// Pearson's chi^2 test of a sampling function against its density on the sphere: the density is integrated adaptively
+/// over a theta-phi grid, cells that expect little are pooled, and what sampling loses must match what the density
+/// lacks to 1. Each test is at level 1 % over all the tests that a caller declares (Sidak). [Jakob2010chi2]
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 
 namespace pellucid::testing {
 
-/// Upper tail of the chi^2 distribution: the regularised incomplete gamma Q(dof/2, x/2), by the series for P below a + 1 and by
-/// Lentz's continued fraction above. [DLMF 8.11.4, 8.9.2]
+/// Upper tail of the chi^2 distribution: the regularised incomplete gamma Q(dof/2, x/2), by the series for P below a +
+/// 1 and by Lentz's continued fraction above. [DLMF 8.11.4, 8.9.2]
 inline double chiSquareTail(double chi2, double dof) {
     const double a = 0.5 * dof, x = 0.5 * chi2;
     if (x <= 0.0) return 1.0;
@@ -72,7 +72,8 @@ inline ChiSquareResult compareCounts(const std::vector<double>& expected, const 
         }
     }
     // Samples where the density is (next to) nothing: a floor keeps one rounding from failing, ten will.
-    if (pooledExpected > 0.0 || pooledObserved > 0.0) close(std::max(pooledExpected, 0.5), std::max(pooledObserved, 0.5));
+    if (pooledExpected > 0.0 || pooledObserved > 0.0)
+        close(std::max(pooledExpected, 0.5), std::max(pooledObserved, 0.5));
     result.pValue = result.cells > 1 ? chiSquareTail(chi2, result.cells - 1) : 1.0;
     return result;
 }
@@ -95,8 +96,10 @@ struct Cell {
 inline double theta(const SphereGrid& grid, double t) { return kPiD * std::pow(t, grid.power); }
 
 inline double gauss4x4(const SphereGrid& grid, const Frame& frame, const Density& density, const Cell& cell) {
-    constexpr std::array<double, 4> kNode{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
-    constexpr std::array<double, 4> kWeight{0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
+    constexpr std::array<double, 4> kNode{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
+                                          0.8611363115940526};
+    constexpr std::array<double, 4> kWeight{0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
+                                            0.3478548451374538};
     const double ht = 0.5 * (cell.t1 - cell.t0), hp = 0.5 * (cell.phi1 - cell.phi0);
     double sum = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -114,7 +117,8 @@ inline double gauss4x4(const SphereGrid& grid, const Frame& frame, const Density
 inline double integrate(const SphereGrid& grid, const Frame& frame, const Density& density, const Cell& c, double whole,
                         int depth) {
     const double t = 0.5 * (c.t0 + c.t1), phi = 0.5 * (c.phi0 + c.phi1);
-    const std::array<Cell, 4> parts{{{c.t0, t, c.phi0, phi}, {t, c.t1, c.phi0, phi}, {c.t0, t, phi, c.phi1}, {t, c.t1, phi, c.phi1}}};
+    const std::array<Cell, 4> parts{
+        {{c.t0, t, c.phi0, phi}, {t, c.t1, c.phi0, phi}, {c.t0, t, phi, c.phi1}, {t, c.t1, phi, c.phi1}}};
     std::array<double, 4> values{};
     for (std::size_t i = 0; i < 4; ++i) values[i] = gauss4x4(grid, frame, density, parts[i]);
     const double sum = values[0] + values[1] + values[2] + values[3];
@@ -139,7 +143,8 @@ inline ChiSquareResult chiSquareTest(const std::function<std::optional<glm::vec3
         const auto column = static_cast<double>(i % static_cast<std::size_t>(grid.phis));
         const detail::Cell cell{row / grid.thetas, (row + 1.0) / grid.thetas, 2.0 * kPiD * column / grid.phis,
                                 2.0 * kPiD * (column + 1.0) / grid.phis};
-        const double value = detail::integrate(grid, frame, density, cell, detail::gauss4x4(grid, frame, density, cell), 0);
+        const double value =
+            detail::integrate(grid, frame, density, cell, detail::gauss4x4(grid, frame, density, cell), 0);
         expected[i] = samples * value;
         mass += value;
     }
@@ -152,7 +157,8 @@ inline ChiSquareResult chiSquareTest(const std::function<std::optional<glm::vec3
             const double angle = std::atan2(std::hypot(local.x, local.y), local.z);
             double phi = std::atan2(local.y, local.x);
             if (phi < 0.0) phi += 2.0 * kPiD;
-            const int row = std::min(grid.thetas - 1, static_cast<int>(std::pow(angle / kPiD, 1.0 / grid.power) * grid.thetas));
+            const int row =
+                std::min(grid.thetas - 1, static_cast<int>(std::pow(angle / kPiD, 1.0 / grid.power) * grid.thetas));
             const int column = std::min(grid.phis - 1, static_cast<int>(phi / (2.0 * kPiD) * grid.phis));
             cell = static_cast<std::size_t>(row * grid.phis + column);
         }

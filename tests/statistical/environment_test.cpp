@@ -95,7 +95,8 @@ TEST(Environment, MeanIsTheIntegralOfTheInterpolation) {
     }
 }
 
-/// Pearson's test over a grid of the sphere; the density, piecewise constant, is integrated by midpoints that fit its texels.
+/// Pearson's test over a grid of the sphere; the density, piecewise constant, is integrated by midpoints that fit its
+/// texels.
 void expectSamplesFollowPdf(const Environment& map, int rows, int samples, unsigned seed) {
     std::mt19937_64 random(seed);
     const int columns = 2 * rows, fine = 24;

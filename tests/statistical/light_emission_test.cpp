@@ -1,5 +1,5 @@
-/// Photons' starts: total flux against closed forms, directions against their density, and photons from infinity against
-/// the irradiance that they must make.
+/// Photons' starts: total flux against closed forms, directions against their density, and photons from infinity
+/// against the irradiance that they must make.
 #include <cmath>
 #include <random>
 #include <vector>
@@ -38,7 +38,8 @@ Lights::Parts oneOfEach(const Environment* environment) {
     return parts;
 }
 
-/// point 4 pi I; spot the integral of the falloff; triangle pi A L a side; directional pi R^2 E; environment 4 pi^2 R^2 L.
+/// point 4 pi I; spot the integral of the falloff; triangle pi A L a side; directional pi R^2 E; environment 4 pi^2
+/// R^2 L.
 std::vector<double> fluxes() {
     const double disc = kPiD * 2.25;
     return {4.0 * kPiD,       4.0 * 2.0 * kPiD * (0.05 + 0.25 / 3.0),
@@ -132,7 +133,8 @@ TEST(LightEmission, DirectionsFollowTheirDensity) {
     }
 }
 
-/// A small disc anywhere in the scene's sphere receives pi L on each side from a constant sky and E cos from a directional light.
+/// A small disc anywhere in the scene's sphere receives pi L on each side from a constant sky and E cos from a
+/// directional light.
 TEST(LightEmission, PhotonsFromInfinityMakeTheRightIrradiance) {
     const Environment sky = constantSky();
     Lights::Parts parts = oneOfEach(&sky);

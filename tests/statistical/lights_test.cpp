@@ -39,7 +39,8 @@ Lights::Parts quadLamp() {
     return parts;
 }
 
-/// Irradiance from a polygon of radiance 1 wholly above the horizon: (1/2) sum gamma_i n . Gamma_i. [Lambert1760; Arvo1995]
+/// Irradiance from a polygon of radiance 1 wholly above the horizon: (1/2) sum gamma_i n . Gamma_i. [Lambert1760;
+/// Arvo1995]
 double polygonIrradiance(const EmissiveTriangle& t, const glm::vec3& point, const glm::vec3& normal) {
     double sum = 0.0;
     for (int i = 0; i < 3; ++i) {
@@ -57,7 +58,8 @@ struct Estimate {
     double mean = 0.0, deviation = 0.0, error = 0.0;
 };
 
-/// Mean of cos * radiance / pdf: the irradiance. Every sample is checked: finite, and its pdf the one that pdf...() tells.
+/// Mean of cos * radiance / pdf: the irradiance. Every sample is checked: finite, and its pdf the one that pdf...()
+/// tells.
 Estimate irradiance(const Lights& lights, const Lights::Parts& parts, const glm::vec3& point, const glm::vec3& normal,
                     int samples, unsigned seed) {
     std::mt19937_64 random(seed);
@@ -138,8 +140,8 @@ double solidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
            std::atan2(std::fabs(glm::dot(u, glm::cross(v, w))), 1.0 + glm::dot(u, v) + glm::dot(v, w) + glm::dot(w, u));
 }
 
-/// Directions to one triangle, counted in the 64 parts that halving its edges three times makes, against the solid angle or
-/// the area of each part.
+/// Directions to one triangle, counted in the 64 parts that halving its edges three times makes, against the solid
+/// angle or the area of each part.
 TEST(Lights, DirectionsToATriangleFollowTheDensity) {
     constexpr int kCut = 8, kSamples = 100000;
     const EmissiveTriangle t = triangle({-1.0F, 0.0F, 0.3F}, {1.5F, 0.2F, 0.0F}, {0.1F, 0.0F, 1.8F}, Rgb(1.0F), true);
@@ -245,7 +247,8 @@ Lights::Parts mixed(int each, const Environment* environment, unsigned seed) {
     return parts;
 }
 
-/// The probabilities sum to one (over the tree to less) and are those with which lights are chosen, in the flat list and in the tree.
+/// The probabilities sum to one (over the tree to less) and are those with which lights are chosen, in the flat list
+/// and in the tree.
 TEST(Lights, ChoiceProbabilitiesSumToOneAndHold) {
     const Environment environment = skyWithLamp();
     for (const int each : {2, 40}) {
@@ -259,10 +262,13 @@ TEST(Lights, ChoiceProbabilitiesSumToOneAndHold) {
             double sum = 0.0;
             for (std::uint32_t i = 0; i < lights.count(); ++i)
                 sum += expected[i] = static_cast<double>(lights.choicePmf(i, point, normal));
-            if (each == 2) EXPECT_NEAR(sum, 1.0, 1e-5);
+            if (each == 2) {
+                EXPECT_NEAR(sum, 1.0, 1e-5);
+            }
             EXPECT_LT(sum, 1.0 + 1e-5);  // the tree may end in nothing; that share counts as nothing below
             if (k >= 4) continue;
-            // Without a horizon nothing that is chosen is lost but spots and one-sided triangles seen from outside; count the rest.
+            // Without a horizon nothing that is chosen is lost but spots and one-sided triangles seen from outside;
+            // count the rest.
             constexpr int kSamples = 50000;
             double kept = 0.0;
             for (std::uint32_t i = 0; i < lights.count(); ++i) {

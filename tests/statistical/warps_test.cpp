@@ -35,7 +35,8 @@ TEST(Warps, UniformHemisphere) {
 }
 
 TEST(Warps, UniformSphere) {
-    const auto result = run(sampleUniformSphere, [](const glm::vec3&) { return pdfSolidAngleUniformSphere(); }, 3);
+    const auto result = run(
+        sampleUniformSphere, [](const glm::vec3&) { return pdfSolidAngleUniformSphere(); }, 3);
     EXPECT_NEAR(result.mass, 1.0, 1e-4);
     EXPECT_GT(result.pValue, testing::sidakLevel(kTests));
 }
@@ -43,8 +44,9 @@ TEST(Warps, UniformSphere) {
 TEST(Warps, UniformCone) {
     // Half angle at the border of the third of 24 rings, so that no cell is cut.
     const float angle = kPi * 3.0F / 24.0F, sin2 = std::sin(angle) * std::sin(angle);
-    const auto result = run([&](const glm::vec2& u) { return sampleUniformCone(u, sin2); },
-                            [&](const glm::vec3& w) { return w.z >= std::cos(angle) ? pdfSolidAngleUniformCone(sin2) : 0.0F; }, 4);
+    const auto result =
+        run([&](const glm::vec2& u) { return sampleUniformCone(u, sin2); },
+            [&](const glm::vec3& w) { return w.z >= std::cos(angle) ? pdfSolidAngleUniformCone(sin2) : 0.0F; }, 4);
     EXPECT_NEAR(result.mass, 1.0, 1e-3);
     EXPECT_GT(result.pValue, testing::sidakLevel(kTests));
 }
@@ -111,15 +113,16 @@ TEST(ChiSquare, TailMatchesTables) {
 
 TEST(ChiSquare, RejectsWrongDensity) {
     // cos^1.05 instead of cos: of the right mass, wrong by 5 % at the pole.
-    const auto result = run(sampleCosineHemisphere, [](const glm::vec3& w) {
-        return w.z > 0.0F ? std::pow(w.z, 1.05F) * 2.05F / kTwoPi : 0.0F;
-    }, 7);
+    const auto result = run(
+        sampleCosineHemisphere,
+        [](const glm::vec3& w) { return w.z > 0.0F ? std::pow(w.z, 1.05F) * 2.05F / kTwoPi : 0.0F; }, 7);
     EXPECT_NEAR(result.mass, 1.0, 1e-4);
     EXPECT_LT(result.pValue, 1e-6);
 }
 
 TEST(ChiSquare, RejectsWrongMass) {
-    const auto result = run(sampleUniformSphere, [](const glm::vec3&) { return 0.98F * pdfSolidAngleUniformSphere(); }, 8);
+    const auto result = run(
+        sampleUniformSphere, [](const glm::vec3&) { return 0.98F * pdfSolidAngleUniformSphere(); }, 8);
     EXPECT_LT(result.pValue, 1e-6);
 }
 

@@ -119,8 +119,9 @@ TEST(Camera, FootprintIsTheRootOfThePixelsCrossSection) {
     EXPECT_EQ(parallel.footprintSpread, 0.0F);
 }
 
-/// Light tracing onto a tilted plane patch that fills the image and receives `kFlux` evenly; each hit is connected to the
-/// lens. The mean over paths of every pixel is E rho / pi within five standard errors, and the whole image within 1 %.
+/// Light tracing onto a tilted plane patch that fills the image and receives `kFlux` evenly; each hit is connected to
+/// the lens. The mean over paths of every pixel is E rho / pi within five standard errors, and the whole image within
+/// 1 %.
 TEST(Camera, LightTracedPlaneShowsItsRadianceInEveryPixel) {
     constexpr int kPaths = 600000;
     constexpr float kFlux = 5.0F, kReflectance = 0.6F, kHalf = 2.2F;

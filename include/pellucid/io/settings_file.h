@@ -14,7 +14,7 @@ struct SettingsFileEntry {
     int line = 0;
 };
 
-/// The entries in the order of the file. Throws Error{BadInput} with file and line when the file is missing, is not TOML
+/// The entries in the order of the file. Throws Error{BadInput} with file and line when the file is missing, is no TOML
 /// or holds a value that is no word, number or truth value.
 [[nodiscard]] std::vector<SettingsFileEntry> readSettingsFile(const std::filesystem::path& file);
 

@@ -1,5 +1,6 @@
-/// From the unit square to directions and points. Every sampling function stands beside its pdf: the density, in the measure
-/// that its name gives, with which the function makes that value; tests/statistical/warps_test.cpp compares each pair.
+/// From the unit square to directions and points. Every sampling function stands beside its pdf: the density, in the
+/// measure that its name gives, with which the function makes that value; tests/statistical/warps_test.cpp compares
+/// each pair.
 #pragma once
 
 #include <algorithm>

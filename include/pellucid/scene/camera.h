@@ -10,8 +10,8 @@
 
 namespace pellucid {
 
-/// Looks along -z of its own space, y up. glTF conventions: a scale in `toWorld` does not change the picture, so whoever
-/// moves the scene to other units scales xmag and ymag too.
+/// Looks along -z of its own space, y up. glTF conventions: a scale in `toWorld` does not change the picture, so
+/// whoever moves the scene to other units scales xmag and ymag too.
 struct CameraSpec {
     std::string name;
     glm::dmat4 toWorld{1.0};
@@ -41,7 +41,8 @@ struct CameraRay {
 /// Perspective (thin lens) or orthographic camera, in normalised scene space.
 class Camera {
 public:
-    /// `aperture` is the lens diameter and `focus` the distance to the plane in focus, both in scene units; aperture 0 is a pinhole.
+    /// `aperture` is the lens diameter and `focus` the distance to the plane in focus, both in scene units; aperture
+    /// 0 is a pinhole.
     Camera(const CameraSpec& spec, int width, int height, double aperture = 0.0, double focus = 1.0);
 
     [[nodiscard]] int width() const noexcept { return width_; }
@@ -50,9 +51,9 @@ public:
     /// `film` in pixels; `lens` uniform in the unit square.
     [[nodiscard]] CameraRay ray(const glm::vec2& film, const glm::vec2& lens) const noexcept;
 
-    /// Connects `point` to a point of the lens chosen by `lens`. Empty when the point falls outside of the image.
-    /// A light path of throughput beta (W) that is scattered towards the lens with BSDF f and cosine c at `point`
-    /// adds beta * f * c * importance to the pixel (radiance, W m^-2 sr^-1), for one emitted path; divide by their number.
+    /// Connects `point` to a point of the lens chosen by `lens`. Empty when the point falls outside of the image. A
+    /// light path of throughput beta (W) that is scattered towards the lens with BSDF f and cosine c at `point` adds
+    /// beta * f * c * importance to the pixel (radiance, W m^-2 sr^-1), for one emitted path; divide by their number.
     [[nodiscard]] std::optional<FilmPoint> project(const glm::vec3& point, const glm::vec2& lens) const noexcept;
 
     [[nodiscard]] glm::vec3 position() const noexcept { return origin_; }

@@ -24,7 +24,8 @@ public:
 
     /// Radiance that arrives from `direction` (unit, pointing away from the scene). Bilinear between texels.
     [[nodiscard]] Rgb radiance(const glm::vec3& direction) const noexcept;
-    /// A direction drawn from a piecewise constant density that covers everything that radiance() can return. Empty: black.
+    /// A direction drawn from a piecewise constant density that covers everything that radiance() can return. Empty:
+    /// black.
     [[nodiscard]] std::optional<DirectionSample> sample(const glm::vec2& u) const noexcept;
     [[nodiscard]] float pdf(const glm::vec3& direction) const noexcept;
 

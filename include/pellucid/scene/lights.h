@@ -42,14 +42,13 @@ struct DirectionalEmitter {
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional, Triangle, Environment };
 
-/// A light seen from a shading point.
+/// A light seen from a shading point. The estimate is f |cos| * radiance / pdfSolidAngle, for delta lights too.
 struct LightSample {
     glm::vec3 wi{0.0F};     ///< unit, to the light
     float distance = 0.0F;  ///< infinity for directional and environment
-    Rgb radiance{
-        0.0F};  ///< times f |cos| / pdfSolidAngle is the estimate; for a delta light: the irradiance-like I/d^2 or E, already divided by nothing
+    Rgb radiance{0.0F};     ///< towards the point; of a delta light the irradiance across wi: I / d^2 or E
     float pdfSolidAngle =
-        0.0F;  ///< of the chosen direction, with the choice of the light; for a delta light: the probability of choosing it
+        0.0F;  ///< of wi, with the choice of the light; of a delta light the probability of the choice
     bool delta = false;
     std::uint32_t light = 0;
 };
@@ -102,18 +101,20 @@ public:
     [[nodiscard]] double power(std::uint32_t light) const noexcept;
     [[nodiscard]] double totalPower() const noexcept;
 
-    /// One light and a point on it, seen from `point` with normal `normal` (zero vector: no surface, no horizon). Among few
-    /// lights the choice follows an estimate of what each sends to the point, among many a light tree (bounds, strength,
-    /// orientation); a light that cannot reach the point has no share. Empty: black or below the horizon.
+    /// One light and a point on it, seen from `point` with normal `normal` (zero vector: no surface, no horizon).
+    /// Among few lights the choice follows an estimate of what each sends to the point, among many a light tree
+    /// (bounds, strength, orientation); a light that cannot reach the point has no share. Empty: black or below the
+    /// horizon.
     [[nodiscard]] std::optional<LightSample> sample(const glm::vec3& point, const glm::vec3& normal, float chooseLight,
                                                     const glm::vec2& u) const noexcept;
 
-    /// Probability with which sample() from (point, normal) chooses `light`. Over few lights it sums to 1, or to 0 where none
-    /// reaches the point; over many to at most 1, since the tree may end at a light that proves out of reach.
+    /// Probability with which sample() from (point, normal) chooses `light`. Over few lights it sums to 1, or to 0
+    /// where none reaches the point; over many to at most 1, since the tree may end at a light that proves out of
+    /// reach.
     [[nodiscard]] float choicePmf(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal) const noexcept;
     /// Density per solid angle with which sample() from (point, normal) makes direction `wi` to the emissive triangle
-    /// (geometry, primitive) hit at `distance`. 0 when that triangle is no light, on the dark side of a one-sided one and
-    /// below the horizon of `normal`: what sample() cannot make.
+    /// (geometry, primitive) hit at `distance`. 0 when that triangle is no light, on the dark side of a one-sided one
+    /// and below the horizon of `normal`: what sample() cannot make.
     [[nodiscard]] float pdfTriangle(const glm::vec3& point, const glm::vec3& normal, std::uint32_t geometry,
                                     std::uint32_t primitive, const glm::vec3& wi, float distance) const noexcept;
     [[nodiscard]] float pdfEnvironment(const glm::vec3& point, const glm::vec3& normal,

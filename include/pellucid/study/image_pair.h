@@ -31,8 +31,8 @@ public:
     [[nodiscard]] bool counts(std::size_t pixel) const noexcept {
         return mask_ < 0 || reference_.at(pixel, mask_) != 0.0F;
     }
-    /// 0.01 mean(R)^2, the floor of relmse's denominator: it makes relmse independent of exposure and keeps black pixels
-    /// from deciding it. The mean is over every finite value of the reference, masked pixels included.
+    /// 0.01 mean(R)^2, the floor of relmse's denominator: it makes relmse independent of exposure and keeps black
+    /// pixels from deciding it. The mean is over every finite value of the reference, masked pixels included.
     [[nodiscard]] double relativeFloor() const noexcept { return relativeFloor_; }
 
 private:

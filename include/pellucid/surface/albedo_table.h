@@ -1,7 +1,8 @@
-/// How much light a coat of GGX facets sends back, bounded from above, so that the diffuse base under it never gets more than
-/// the rest. The coat's Fresnel term is linear in the exact curve x of its ior (surface/fresnel.h), so its directional albedo is
-/// E = f90 (f0 E1 + (1 - f0) Ex) with E1 for F = 1 and Ex for F = x. Each is bounded by e0 + e1 (1 - c)^5: the form that
-/// DiffuseLobe needs. **Bias**: none; the bound's slack is energy that the material absorbs (a modelling choice).
+/// How much light a coat of GGX facets sends back, bounded from above, so that the diffuse base under it never gets
+/// more than the rest. The coat's Fresnel term is linear in the exact curve x of its ior (surface/fresnel.h), so its
+/// directional albedo is E = f90 (f0 E1 + (1 - f0) Ex) with E1 for F = 1 and Ex for F = x. Each is bounded by e0 + e1
+/// (1 - c)^5: the form that DiffuseLobe needs. **Bias**: none; the bound's slack is energy that the material absorbs (a
+/// modelling choice).
 #pragma once
 
 #include <array>
@@ -20,8 +21,8 @@ struct AlbedoBound {
     }
 };
 
-/// Bounds over roughness for one Fresnel curve. A node holds for both intervals beside it, so that what lies between two
-/// nodes holds as well.
+/// Bounds over roughness for one Fresnel curve. A node holds for both intervals beside it, so that what lies between
+/// two nodes holds as well.
 class AlbedoTable {
 public:
     static constexpr int kSteps = 32;
@@ -53,7 +54,8 @@ private:
     std::vector<AlbedoTable> curves_;
 };
 
-/// Directional albedo of GGX facets under a Fresnel curve: `n` x `n` points over the visible normals. `eta` as in AlbedoTable.
+/// Directional albedo of GGX facets under a Fresnel curve: `n` x `n` points over the visible normals. `eta` as in
+/// AlbedoTable.
 [[nodiscard]] double ggxAlbedo(float cosTheta, float alpha, float eta, int n);
 
 }  // namespace pellucid

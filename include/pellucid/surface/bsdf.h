@@ -1,4 +1,5 @@
-/// The lobes of a material at a point. Two properties decided once for every pass make the kinds (transport/path_classes.h):
+/// The lobes of a material at a point. Two properties decided once for every pass make the kinds
+/// (transport/path_classes.h):
 ///   Specular S: casts caustics (photons that pass it go on to the caustic map), never receives photons;
 ///   Glossy   G: neither; only path tracing carries light over it;
 ///   Diffuse  D: receives photons and irradiance, never casts caustics.
@@ -27,8 +28,8 @@ enum class TransportMode { Radiance, Flux };
 
 /// Roughness thresholds (glTF's perceptual roughness; GGX alpha = roughness^2).
 struct LobeRules {
-    float castRoughness = 0.3F;   ///< a microfacet lobe up to this roughness is Specular, above it Glossy
-    float deltaAlpha = 1e-3F;     ///< below this GGX alpha a lobe is an exact delta lobe
+    float castRoughness = 0.3F;  ///< a microfacet lobe up to this roughness is Specular, above it Glossy
+    float deltaAlpha = 1e-3F;    ///< below this GGX alpha a lobe is an exact delta lobe
 };
 
 struct BsdfSample {
@@ -37,13 +38,13 @@ struct BsdfSample {
     float pdfSolidAngle = 0.0F;  ///< of all non-delta lobes in the sampled set; 0 for a delta sample
     LobeKinds kind = kNoLobe;    ///< the kind of the lobe that was chosen: exactly one bit
     bool delta = false;
-    bool transmitted = false;    ///< wi is on the other side of the surface than wo
-    float etaScale = 1.0F;       ///< product over a path undoes the radiance scaling of refraction, for Russian roulette
+    bool transmitted = false;  ///< wi is on the other side of the surface than wo
+    float etaScale = 1.0F;     ///< product over a path undoes the radiance scaling of refraction, for Russian roulette
 };
 
-/// Diffuse lobe f = reflectance / pi * T(wo) T(wi), T(c) = a - b (1 - c)^5: Lambert under an interface that lets through
-/// T. The form separates, so irradiance splits in two moments (math in docs/theory.md): sum over light of
-/// f cos = reflectance / pi * T(wo) * (a E - b E5), with E = int L cos and E5 = int L (1 - cos)^5 cos.
+/// Diffuse lobe f = reflectance / pi * T(wo) T(wi), T(c) = a - b (1 - c)^5: Lambert under an interface that lets
+/// through T. The form separates, so irradiance splits in two moments (math in docs/theory.md): sum over light of f cos
+/// = reflectance / pi * T(wo) * (a E - b E5), with E = int L cos and E5 = int L (1 - cos)^5 cos.
 struct DiffuseLobe {
     Rgb reflectance{0.0F};
     float a = 1.0F, b = 0.0F;
@@ -54,7 +55,8 @@ struct DiffuseLobe {
     }
 };
 
-/// Bounds of the directional albedo of a GGX reflection with the exact Fresnel term of each ior; see surface/albedo_table.h.
+/// Bounds of the directional albedo of a GGX reflection with the exact Fresnel term of each ior; see
+/// surface/albedo_table.h.
 class AlbedoTables;
 
 /// All that makeBsdf needs beside the material: made once for a scene's materials.
@@ -89,33 +91,34 @@ private:
 };
 
 /// The other lobes, in the local frame of the (normal-mapped) shading normal on wo's side. Each casts or not by `kind`.
-struct ConductorLobe {   ///< GGX reflection, Schlick Fresnel with F90 = 1; alpha 0: delta mirror
+struct ConductorLobe {  ///< GGX reflection, Schlick Fresnel with F90 = 1; alpha 0: delta mirror
     Rgb f0{1.0F};
     float alpha = 0.0F;
 };
-struct CoatLobe {        ///< GGX reflection of a dielectric over the diffuse base
-    Rgb f0{0.04F};       ///< F = f90 (f0 + (1 - f0) x), x = (Fexact(eta) - F0(eta)) / (1 - F0(eta))
+struct CoatLobe {   ///< GGX reflection of a dielectric over the diffuse base
+    Rgb f0{0.04F};  ///< F = f90 (f0 + (1 - f0) x), x = (Fexact(eta) - F0(eta)) / (1 - F0(eta))
     float f90 = 1.0F, eta = 1.5F, alpha = 0.0F;
 };
 struct DielectricLobe {  ///< reflection and transmission, exact Fresnel; alpha 0: delta
     Rgb tint{1.0F};      ///< multiplies transmission, once per crossing: KHR_materials_volume's base colour is a foil
-    float eta = 1.5F;    ///< ior on the far side over ior on wo's side (of the wall itself for a thin one); 0 reflects all
+    float eta =
+        1.5F;  ///< ior on the far side over ior on wo's side (of the wall itself for a thin one); 0 reflects all
     float alpha = 0.0F;
     float specular = 1.0F;  ///< multiplies the reflectance short of total reflection
-    bool thin = false;   ///< thin-walled: R' = 2R/(1+R), transmission straight on
+    bool thin = false;      ///< thin-walled: R' = 2R/(1+R), transmission straight on
 };
 
 struct Lobe {
     std::variant<DiffuseLobe, ConductorLobe, CoatLobe, DielectricLobe> model;
-    float weight = 0.0F;      ///< of this lobe in the mix
-    float probability = 0.0F; ///< relative, for choosing a lobe to sample
+    float weight = 0.0F;       ///< of this lobe in the mix
+    float probability = 0.0F;  ///< relative, for choosing a lobe to sample
     LobeKinds kind = kNoLobe;
     bool delta = false;
 };
 
 /// What a pair of directions is worth; see Bsdf::eval and Bsdf::pdf.
 struct BsdfValue {
-    Rgb value{0.0F};             ///< f |cos wi|
+    Rgb value{0.0F};  ///< f |cos wi|
     float pdfSolidAngle = 0.0F;
 };
 
@@ -125,8 +128,10 @@ public:
     [[nodiscard]] BsdfValue evaluate(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds,
                                      TransportMode mode) const noexcept;
 
-    /// f |cos(wi)| of the non-delta lobes among `kinds`; 0 where the shading and geometric normals disagree about the side.
-    [[nodiscard]] Rgb eval(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, TransportMode mode) const noexcept;
+    /// f |cos(wi)| of the non-delta lobes among `kinds`; 0 where the shading and geometric normals disagree about the
+    /// side.
+    [[nodiscard]] Rgb eval(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds,
+                           TransportMode mode) const noexcept;
 
     /// Density per solid angle with which sample() over the same `kinds` makes `wi` by a non-delta lobe.
     [[nodiscard]] float pdf(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds) const noexcept;
@@ -150,7 +155,8 @@ public:
 
     /// Construction is SurfaceModel's; public so that tests can build a Bsdf lobe by lobe.
     Bsdf(const Frame& frame, const glm::vec3& geometricNormal, bool backSide, bool bordersVolume) noexcept;
-    /// Sets the lobe's probability. At most one diffuse lobe and kMaxLobes in all; lobes that carry nothing are left out.
+    /// Sets the lobe's probability. At most one diffuse lobe and kMaxLobes in all; lobes that carry nothing are left
+    /// out.
     void add(const Lobe& lobe, const glm::vec3& wo) noexcept;
 
 private:

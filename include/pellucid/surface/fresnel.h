@@ -1,5 +1,5 @@
-/// Fresnel reflectance of smooth interfaces: what part of the light an interface sends back. Pure functions of the cosine
-/// against the (micro)facet's normal; the lobes of surface/lobes.h call them for every facet.
+/// Fresnel reflectance of smooth interfaces: what part of the light an interface sends back. Pure functions of the
+/// cosine against the (micro)facet's normal; the lobes of surface/lobes.h call them for every facet.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,10 @@
 
 namespace pellucid {
 
-/// The unpolarised reflectance of a dielectric interface for light at |cos| = `cosTheta`; `eta` is the index of the far side
-/// over that of the near side. [Hecht2002, eqs. 4.34-4.40] 1 from the critical angle on, 0 for eta = 1; eta <= 0 reflects all
-/// (KHR_materials_ior's special value). In double: near eta = 1 the result is a square of a small difference.
+/// The unpolarised reflectance of a dielectric interface for light at |cos| = `cosTheta`; `eta` is the index of the far
+/// side over that of the near side. [Hecht2002, eqs. 4.34-4.40] 1 from the critical angle on, 0 for eta = 1; eta <= 0
+/// reflects all (KHR_materials_ior's special value). In double: near eta = 1 the result is a square of a small
+/// difference.
 [[nodiscard]] inline float fresnelDielectric(float cosTheta, float eta) noexcept {
     if (eta <= 0.0F) return 1.0F;
     if (eta == 1.0F) return 0.0F;
@@ -30,7 +31,8 @@ namespace pellucid {
     return root * root;
 }
 
-/// Cosine of the refracted ray: Snell's law, 0 at and beyond the critical angle. `sin2` is the squared sine on the near side.
+/// Cosine of the refracted ray: Snell's law, 0 at and beyond the critical angle. `sin2` is the squared sine on the near
+/// side.
 [[nodiscard]] inline float refractedCosine(double sin2, float eta) noexcept {
     const double n = eta;
     return static_cast<float>(std::sqrt(std::max(0.0, 1.0 - sin2 / (n * n))));
@@ -47,8 +49,8 @@ namespace pellucid {
     return f0 + (Rgb{1.0F} - f0) * schlickWeight(cosTheta);
 }
 
-/// The exact curve as a mixing factor from F0 (value 0) to 1 (value 1): (F(cos) - F0) / (1 - F0). A little below zero at
-/// mid angles for eta > 2 + sqrt(3). Schlick's curve stands in where F0 is 1 and leaves none.
+/// The exact curve as a mixing factor from F0 (value 0) to 1 (value 1): (F(cos) - F0) / (1 - F0). A little below zero
+/// at mid angles for eta > 2 + sqrt(3). Schlick's curve stands in where F0 is 1 and leaves none.
 [[nodiscard]] inline float fresnelCurve(float cosTheta, float eta) noexcept {
     if (eta <= 0.0F) return schlickWeight(cosTheta);
     const float f0 = fresnelNormal(eta);

@@ -1,6 +1,6 @@
-/// What each lobe of the closed set in surface/bsdf.h does with a pair of directions. Local frame: z is the shading normal on
-/// wo's side, so wo.z > 0; wi.z > 0 reflects, wi.z < 0 transmits. Bsdf mixes them and checks the geometric normal. Inline:
-/// a value that goes through memory between Bsdf and a lobe costs more than the lobe's arithmetic.
+/// What each lobe of the closed set in surface/bsdf.h does with a pair of directions. Local frame: z is the shading
+/// normal on wo's side, so wo.z > 0; wi.z > 0 reflects, wi.z < 0 transmits. Bsdf mixes them and checks the geometric
+/// normal. Inline: a value that goes through memory between Bsdf and a lobe costs more than the lobe's arithmetic.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@ struct LobeValue {
     float pdfSolidAngle = 0.0F;  ///< with which sampleLobe makes wi
 };
 
-/// A direction that a lobe chose. `weight` is only filled by delta lobes: the limit of f |cos| / pdf. Passed by reference:
-/// an optional of it would be copied in wide pieces that wait for the narrow stores before them.
+/// A direction that a lobe chose. `weight` is only filled by delta lobes: the limit of f |cos| / pdf. Passed by
+/// reference: an optional of it would be copied in wide pieces that wait for the narrow stores before them.
 struct LobeDirection {
     glm::vec3 wi{0.0F};
     Rgb weight{0.0F};
@@ -36,7 +36,8 @@ struct LobeDirection {
     return lobe.f90 * glm::max(Rgb{0.0F}, lobe.f0 + (Rgb{1.0F} - lobe.f0) * x);
 }
 
-/// Reflectance of the dielectric (of the whole slab for a thin wall): specular factor x exact Fresnel, total reflection 1.
+/// Reflectance of the dielectric (of the whole slab for a thin wall): specular factor x exact Fresnel, total reflection
+/// 1.
 [[nodiscard]] inline float dielectricReflectance(const DielectricLobe& lobe, float cosTheta) noexcept {
     const float f = fresnelDielectric(cosTheta, lobe.eta);
     if (f >= 1.0F) return 1.0F;
@@ -48,13 +49,14 @@ namespace detail {
 
 inline constexpr float kLeastAlbedo = 1e-4F;  ///< keeps every lobe choosable where the guess is too small
 
-/// D G2 |cos i| / (4 |cos o| |cos i|) and the visible normals' pdf of wi, for the reflection at h = (wo + wi) / |wo + wi|.
+/// D G2 |cos i| / (4 |cos o| |cos i|) and the visible normals' pdf of wi, for the reflection at h = (wo + wi) / |wo +
+/// wi|.
 struct FacetReflection {
     float value = 0.0F, pdf = 0.0F, cosine = 0.0F;  ///< cosine = wo.h
 };
 
 [[nodiscard, gnu::always_inline]] inline FacetReflection reflectAtFacet(const glm::vec3& wo, const glm::vec3& wi,
-                                                                       float alpha) noexcept {
+                                                                        float alpha) noexcept {
     const glm::vec3 h = glm::normalize(wo + wi);
     const float d = ggxDistribution(h, alpha);
     // pdf_wi = pdf_h / (4 wo.h). [Walter2007, eq. 14]
@@ -85,7 +87,7 @@ struct FacetReflection {
 
 /// Refraction by a facet. [Walter2007, eqs. 16, 17, 21]; h from wo + eta wi, cosines cancelled as in ggxVisibility.
 [[nodiscard]] inline LobeValue refractAtFacet(const DielectricLobe& lobe, const glm::vec3& wo, const glm::vec3& wi,
-                         TransportMode mode) noexcept {
+                                              TransportMode mode) noexcept {
     const glm::vec3 sum = wo + lobe.eta * wi;
     const float length2 = glm::dot(sum, sum);
     if (!(length2 > 0.0F)) return {};
@@ -131,8 +133,9 @@ inline void sampleSmoothDielectric(const DielectricLobe& lobe, const glm::vec3& 
                                             TransportMode) noexcept {
     if (wi.z <= 0.0F) return {};
     const float pdf = wi.z * kInvPi;
-    return {lobe.reflectance * (lobe.transmittance(std::min(1.0F, wo.z)) * lobe.transmittance(std::min(1.0F, wi.z)) * pdf),
-            pdf};
+    return {
+        lobe.reflectance * (lobe.transmittance(std::min(1.0F, wo.z)) * lobe.transmittance(std::min(1.0F, wi.z)) * pdf),
+        pdf};
 }
 
 [[nodiscard]] inline LobeValue evaluateLobe(const ConductorLobe& lobe, const glm::vec3& wo, const glm::vec3& wi,
@@ -161,8 +164,8 @@ inline void sampleSmoothDielectric(const DielectricLobe& lobe, const glm::vec3& 
     return {lobe.tint * ((1.0F - r) * facet.value), (1.0F - chance) * facet.pdf};
 }
 
-/// Each sampleLobe fills `out` and returns false where nothing goes on. `choose` decides between reflection and transmission,
-/// `u` the facet.
+/// Each sampleLobe fills `out` and returns false where nothing goes on. `choose` decides between reflection and
+/// transmission, `u` the facet.
 [[nodiscard]] inline bool sampleLobe(const DiffuseLobe&, const glm::vec3&, float, const glm::vec2& u, TransportMode,
                                      LobeDirection& out) noexcept {
     out.wi = sampleCosineHemisphere(u);
@@ -177,8 +180,8 @@ inline void sampleSmoothDielectric(const DielectricLobe& lobe, const glm::vec3& 
     return true;
 }
 
-[[nodiscard]] inline bool sampleLobe(const CoatLobe& lobe, const glm::vec3& wo, float, const glm::vec2& u, TransportMode,
-                                     LobeDirection& out) noexcept {
+[[nodiscard]] inline bool sampleLobe(const CoatLobe& lobe, const glm::vec3& wo, float, const glm::vec2& u,
+                                     TransportMode, LobeDirection& out) noexcept {
     if (lobe.alpha > 0.0F) return detail::sampleReflection(wo, lobe.alpha, u, out);
     out.wi = detail::mirrored(wo);
     out.weight = coatReflectance(lobe, wo.z);
@@ -209,7 +212,8 @@ inline void sampleSmoothDielectric(const DielectricLobe& lobe, const glm::vec3& 
 /// Guessed directional albedo for choosing lobes: never 0 for a lobe that can carry light.
 [[nodiscard]] inline float estimateAlbedo(const DiffuseLobe& lobe, const glm::vec3& wo) noexcept {
     const float mean = lobe.a - lobe.b * (1.0F / 21.0F);  // 2 int T(c) c dc
-    return std::max(detail::kLeastAlbedo, maxComponent(lobe.reflectance) * mean * lobe.transmittance(std::min(1.0F, wo.z)));
+    return std::max(detail::kLeastAlbedo,
+                    maxComponent(lobe.reflectance) * mean * lobe.transmittance(std::min(1.0F, wo.z)));
 }
 
 // Facets that a grazing viewer sees are tilted towards it: ggxSlope is about the mean cosine against them.

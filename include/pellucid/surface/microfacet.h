@@ -1,5 +1,6 @@
-/// The GGX distribution of facets, Smith's masking and the sampling of visible normals, in the local frame whose z is the
-/// normal. Written without tangents and with sin^2 from x and y, so that alpha = 1e-3 and grazing directions keep their digits.
+/// The GGX distribution of facets, Smith's masking and the sampling of visible normals, in the local frame whose z is
+/// the normal. Written without tangents and with sin^2 from x and y, so that alpha = 1e-3 and grazing directions keep
+/// their digits.
 #pragma once
 
 #include <algorithm>

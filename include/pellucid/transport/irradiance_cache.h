@@ -49,6 +49,9 @@ public:
     /// Empty where no record speaks.
     [[nodiscard]] std::optional<Irradiance> lookup(const glm::vec3& position, const glm::vec3& normal) const noexcept;
 
+    /// Whether some record speaks there with an error below `limit` (at most error()).
+    [[nodiscard]] bool covers(const glm::vec3& position, const glm::vec3& normal, float limit) const noexcept;
+
     [[nodiscard]] const std::vector<IrradianceRecord>& records() const noexcept { return records_; }
     [[nodiscard]] float error() const noexcept { return error_; }
 

@@ -101,4 +101,16 @@ private:
 /// The part of a shadow ray's way that is tested: it ends short of the light by the rounding of both ends.
 [[nodiscard]] inline float shadowLength(float distance) noexcept { return distance * (1.0F - 1e-5F) - 4e-5F; }
 
+/// The shadow ray from a surface point to a light sample, aimed from the offset origin at the very point that was sampled:
+/// along wi itself the ray would run beside it and meet the lamp early where it leaves the lamp at a flat angle.
+[[nodiscard]] inline Ray shadowRay(const glm::vec3& position, const glm::vec3& side, const glm::vec3& wi, float distance) noexcept {
+    Ray ray{offsetOrigin(position, side), wi, distance};
+    if (!std::isfinite(distance)) return ray;
+    const glm::vec3 to = position + wi * distance - ray.origin;
+    const float length = glm::length(to);
+    if (length > 0.0F) ray.direction = to / length;
+    ray.tMax = shadowLength(length);
+    return ray;
+}
+
 }  // namespace pellucid

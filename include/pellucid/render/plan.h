@@ -1,0 +1,49 @@
+/// The plan: what this scene needs and what is left out, each with its reason and number. Decided from materials, lights and
+/// a short pilot; counted in rays and photons, never in seconds, so that the same scene and seed give the same plan.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pellucid/render/render.h>
+#include <pellucid/scene/scene.h>
+#include <pellucid/transport/emission_guide.h>
+#include <pellucid/transport/visible_cells.h>
+#include <pellucid/transport/walk.h>
+
+namespace pellucid {
+
+/// What the camera sees at D vertices, one look a pixel.
+struct Survey {
+    std::vector<GatherPoint> points;     ///< by pixel; not valid where no D vertex was found
+    std::size_t receivers = 0;           ///< pixels with a valid one
+    float medianFootprint = 0.0F;
+    VisibleCells visible{1.0F};
+    std::uint64_t rays = 0;
+};
+
+struct Plan {
+    bool causticMap = false, globalMap = false, cache = false, lightPass = false;
+    std::uint32_t causticPaths = 0;      ///< an iteration
+    std::uint32_t globalPaths = 0;       ///< a generation of the cache
+    float causticFootprints = 2.5F;      ///< kernel radius of the first iteration
+    float alpha = 2.0F / 3.0F;
+    float cacheError = 0.25F;
+    int gatherRays = 512;
+    float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
+    std::vector<UsefulEmission> training;
+    std::vector<Decision> decisions;
+    std::vector<std::string> blindSpots;
+    double timeCap = 0.0;                ///< seconds, for a render that has only an error to reach; 0: none
+    std::uint64_t pilotRays = 0, pilotPhotons = 0;
+};
+
+[[nodiscard]] Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, const Workers& workers);
+
+[[nodiscard]] Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen,
+                            const Workers& workers);
+
+/// The settings with every automatic choice replaced by what the plan decided.
+[[nodiscard]] Settings resolvedSettings(const Settings& asked, const Plan& plan);
+
+}  // namespace pellucid

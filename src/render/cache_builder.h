@@ -1,0 +1,22 @@
+/// Fills an irradiance cache for one view in batch-synchronous rounds, coarse to fine: misses are marked against the frozen
+/// cache, their records computed in parallel and inserted in one order. The same bits at any number of threads.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include <pellucid/render/plan.h>
+#include <pellucid/transport/irradiance_cache.h>
+
+namespace pellucid {
+
+struct CacheBuild {
+    std::unique_ptr<IrradianceCache> cache;
+    std::uint64_t rays = 0;
+};
+
+/// `error` is Ward's a of this generation; look-ups while rendering use a little more, so that few points miss.
+[[nodiscard]] CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, float error,
+                                    std::uint64_t seed, const Workers& workers, const std::function<bool()>& stop);
+
+}  // namespace pellucid

@@ -1,0 +1,28 @@
+/// A render's state on disk: whole or absent (temporary name, then rename), with a checksum and the key of what made it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pellucid {
+
+/// Scene hash, method, seed, camera, size and every setting.
+struct CheckpointKey {
+    std::string text;
+};
+
+struct CheckpointState {
+    std::uint32_t iteration = 0, generation = 0;
+    double raysOfGeneration = 0.0, raysSince = 0.0;
+    std::vector<char> film;
+};
+
+void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key, const CheckpointState& state);
+
+/// Empty when there is no such file; throws Error{BadInput} when it is damaged or belongs to another render.
+[[nodiscard]] std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file, const CheckpointKey& key);
+
+}  // namespace pellucid

@@ -1,0 +1,187 @@
+#include <pellucid/render/plan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include <pellucid/transport/photon_trace.h>
+#include <pellucid/transport/walk.h>
+
+namespace pellucid {
+
+namespace {
+
+/// Pilot photons, then again this many times more where the first saw nothing useful.
+constexpr std::uint32_t kPilotPaths = 60'000;
+constexpr std::uint32_t kPilotRetryFactor = 10;
+constexpr std::size_t kEnoughUseful = 400;
+constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
+constexpr double kDefaultTimeCap = 120.0;
+
+[[nodiscard]] bool isOff(const std::string& choice) { return choice == "off"; }
+[[nodiscard]] bool isOn(const std::string& choice) { return choice == "on"; }
+
+void decide(Plan& plan, std::string name, std::string choice, std::string reason, bool overridden = false) {
+    plan.decisions.push_back({std::move(name), std::move(choice), std::move(reason), overridden});
+}
+
+/// Trains emission guiding; returns how many pilot photons were useful.
+[[nodiscard]] std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                                        const Workers& workers) {
+    std::vector<UsefulEmission> useful;
+    std::uint32_t paths = kPilotPaths;
+    for (std::uint64_t attempt = 0; attempt < 3; ++attempt) {
+        const EmissionGuide guide(scene.lights(), useful);
+        const CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible, workers);
+        plan.pilotRays += pass.rays;
+        plan.pilotPhotons += pass.emitted;
+        // The guided second look replaces the first: its sample is the better one.
+        useful = pass.useful;
+        if (useful.empty()) paths = kPilotPaths * kPilotRetryFactor;
+        if (attempt > 0 && (useful.size() >= kEnoughUseful || useful.empty())) break;
+    }
+    plan.training = std::move(useful);
+    return plan.training.size();
+}
+
+void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen, const Workers& workers) {
+    const Settings& s = request.settings;
+    const LobeKinds kinds = scene.lobeKinds();
+    if (isOff(s.causticMap)) return decide(plan, "caustic map", "off", "asked for; its class is path traced", true);
+    if ((kinds & kSpecular) == kNoLobe) return decide(plan, "caustic map", "off", fmt::format("no material casts caustics: roughness above {} and no glass", s.castRoughness));
+    if (seen.receivers == 0) return decide(plan, "caustic map", "off", "the camera sees no diffuse surface");
+    const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
+    if (useful == 0 && !isOn(s.causticMap))
+        return decide(plan, "caustic map", "off", fmt::format("0 of {} pilot photons arrived where the camera looks", plan.pilotPhotons));
+    plan.causticMap = true;
+    const auto wanted = static_cast<double>(seen.points.size()) * 1.5;
+    plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
+                                              : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
+    if (s.causticRadius > 0.0) plan.causticFootprints = static_cast<float>(s.causticRadius);
+    plan.alpha = static_cast<float>(s.alpha);
+    if (isOff(s.guiding)) plan.training.clear();
+    decide(plan, "caustic map", "on", fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons), isOn(s.causticMap));
+    decide(plan, "caustic photons", fmt::format("{} paths an iteration", plan.causticPaths),
+           fmt::format("1.5 a pixel; first kernel radius {:.2f} pixel footprints", plan.causticFootprints), s.causticPhotons >= 0);
+    decide(plan, "emission guiding", isOff(s.guiding) ? "off" : "on",
+           fmt::format("{} useful starts in {} cells", useful, EmissionGuide(scene.lights(), plan.training).cells()), isOff(s.guiding));
+}
+
+void planIndirect(Plan& plan, const RenderRequest& request, const Survey& seen) {
+    const Settings& s = request.settings;
+    if (isOff(s.cache)) {
+        decide(plan, "irradiance cache", "off", "asked for; indirect light is path traced", true);
+        return;
+    }
+    if (seen.receivers == 0) {
+        decide(plan, "irradiance cache", "off", "the camera sees no diffuse surface");
+        decide(plan, "global map", "off", "nothing gathers from it");
+        return;
+    }
+    plan.cache = plan.globalMap = true;
+    plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons) : 150'000U;
+    plan.globalMap = plan.globalPaths > 0;
+    if (s.cacheError > 0.0) plan.cacheError = static_cast<float>(s.cacheError);
+    if (s.gatherRays > 0) plan.gatherRays = s.gatherRays;
+    if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);
+    if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
+    const double share = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
+    decide(plan, "irradiance cache", "on", fmt::format("{:.1f} % of the pixels end at a diffuse surface", share), isOn(s.cache));
+    decide(plan, "global map", plan.globalMap ? "on" : "off", fmt::format("{} photon paths for each generation of records", plan.globalPaths), s.globalPhotons >= 0);
+}
+
+/// Which classes the method cannot see: no sampler of its makes such a path.
+void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request) {
+    const Lights& lights = scene.lights();
+    std::size_t delta = 0;
+    for (std::uint32_t l = 0; l < lights.count(); ++l) {
+        const LightKind k = lights.kind(l);
+        if (k == LightKind::Point || k == LightKind::Spot || k == LightKind::Directional) ++delta;
+    }
+    const bool casts = (scene.lobeKinds() & kSpecular) != kNoLobe;
+    if (!casts || delta == 0) return;
+    const std::string which = fmt::format("{} point-like light{} and surfaces that cast caustics: ", delta, delta == 1 ? "" : "s");
+    if (request.method == Method::Path)
+        plan.blindSpots.push_back(which + "path tracing sees none of their caustics (E .. D S+ L)");
+    if (request.method == Method::Reference)
+        plan.blindSpots.push_back(which + "caustics that are themselves seen through glass or in a mirror (E S+ D S+ L), and light that a caustic scatters on, are missing");
+    if (request.method == Method::Photon && !plan.causticMap) plan.blindSpots.push_back(which + "the caustic map is off and path tracing sees none of it");
+}
+
+}  // namespace
+
+Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, const Workers& workers) {
+    Survey s;
+    const auto width = static_cast<std::size_t>(camera.width());
+    s.points.resize(width * static_cast<std::size_t>(camera.height()));
+    std::vector<std::uint64_t> rays((s.points.size() + 1023) / 1024, 0);
+    workers.forRanges(s.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        Walk walk(context);
+        for (std::size_t i = begin; i < end; ++i) {
+            Sampler sampler(hash64(seed ^ 0x737572766579ULL), i, 0);
+            const CameraRay ray = camera.ray({static_cast<float>(i % width) + 0.5F, static_cast<float>(i / width) + 0.5F}, {0.5F, 0.5F});
+            s.points[i] = walk.findGatherPoint({ray.ray, ray.footprintAtOrigin, ray.footprintSpread}, sampler);
+        }
+        rays[begin / 1024] = walk.rays();
+    });
+    s.rays = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    std::vector<float> footprints;
+    for (const GatherPoint& p : s.points)
+        if (p.valid) footprints.push_back(p.footprint);
+    s.receivers = footprints.size();
+    if (footprints.empty()) return s;
+    std::nth_element(footprints.begin(), footprints.begin() + static_cast<std::ptrdiff_t>(footprints.size() / 2), footprints.end());
+    s.medianFootprint = footprints[footprints.size() / 2];
+    s.visible = VisibleCells(std::max(8.0F * s.medianFootprint, 1e-4F));
+    for (const GatherPoint& p : s.points)
+        if (p.valid) s.visible.mark(p.position);
+    return s;
+}
+
+Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen, const Workers& workers) {
+    (void)camera;
+    Plan plan;
+    plan.alpha = static_cast<float>(request.settings.alpha);
+    if (request.method == Method::Photon) {
+        planCaustics(plan, scene, request, seen, workers);
+        planIndirect(plan, request, seen);
+    } else if (request.method != Method::Path) {
+        if ((scene.lobeKinds() & kSpecular) == kNoLobe) {
+            decide(plan, "light tracing", "off", "no material casts caustics");
+        } else {
+            plan.lightPass = true;
+            const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
+            plan.causticPaths = static_cast<std::uint32_t>(std::clamp(static_cast<double>(seen.points.size()), 2e4, 4e6));
+            decide(plan, "light tracing", fmt::format("{} paths an iteration", plan.causticPaths),
+                   fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons));
+        }
+    } else {
+        decide(plan, "photons, cache", "off", "path tracing needs none");
+    }
+    findBlindSpots(plan, scene, request);
+    const Budget& b = request.budget;
+    if (!b.seconds && !b.samples) {
+        plan.timeCap = kDefaultTimeCap;
+        decide(plan, "budget", fmt::format("relative error {}", b.error.value_or(0.05)), fmt::format("at most {} seconds", kDefaultTimeCap));
+    }
+    return plan;
+}
+
+Settings resolvedSettings(const Settings& asked, const Plan& plan) {
+    Settings s = asked;
+    s.causticMap = plan.causticMap ? "on" : "off";
+    s.cache = plan.cache ? "on" : "off";
+    s.guiding = plan.training.empty() ? "off" : "on";
+    s.causticPhotons = static_cast<int>(plan.causticPaths);
+    s.globalPhotons = static_cast<int>(plan.globalPaths);
+    s.causticRadius = static_cast<double>(plan.causticFootprints);
+    s.cacheError = static_cast<double>(plan.cacheError);
+    s.gatherRays = plan.gatherRays;
+    s.minSpacing = static_cast<double>(plan.minSpacing);
+    s.maxSpacing = static_cast<double>(plan.maxSpacing);
+    return s;
+}
+
+}  // namespace pellucid

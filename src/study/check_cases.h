@@ -1,0 +1,27 @@
+/// The lists of cases, in the report's order. Each function appends its own.
+#pragma once
+
+#include <vector>
+
+#include <pellucid/study/check.h>
+
+namespace pellucid::check {
+
+using Cases = std::vector<CheckCase>;
+
+void addFurnaces(Cases& cases);          ///< closed forms 1 to 5: enclosures
+void addLamps(Cases& cases);             ///< 6 to 9: lamps over a floor
+void addSkies(Cases& cases);             ///< 10 to 12: walls and skies, gradients
+void addFlatMirrors(Cases& cases);       ///< 13, 14, 28
+void addCurvedMirrors(Cases& cases);     ///< 18, 19, 23
+void addSlabs(Cases& cases);             ///< 15, 16, 17, 24
+void addLenses(Cases& cases);            ///< 20 to 22, a lamp inside glass
+void addKernels(Cases& cases);           ///< 25 to 27, on synthetic photons
+void addMonteCarlo(Cases& cases);        ///< the lecture's claims
+void addScaleExtremes(Cases& cases);     ///< size, place
+void addMaterialExtremes(Cases& cases);  ///< albedo, ior, roughness
+void addGeometryExtremes(Cases& cases);  ///< bad triangles, coincident faces, open glass
+void addLampExtremes(Cases& cases);      ///< lamps and environments
+void addPhotonExtremes(Cases& cases);    ///< one photon, none, all in one point
+
+}  // namespace pellucid::check

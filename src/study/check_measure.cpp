@@ -1,0 +1,122 @@
+#include "check_measure.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <pellucid/math/hash.h>
+#include <pellucid/transport/emission_guide.h>
+#include <pellucid/transport/photon_trace.h>
+
+namespace pellucid::check {
+
+namespace {
+
+[[nodiscard]] std::string methodName(Method method) {
+    switch (method) {
+        case Method::Photon:
+            return "photon";
+        case Method::Path:
+            return "path";
+        case Method::Light:
+            return "light";
+        case Method::Reference:
+            return "reference";
+    }
+    return "?";
+}
+
+[[nodiscard]] std::uint64_t seedOf(const CheckContext& context, int repetition) {
+    return hashCombine(context.seed, static_cast<std::uint64_t>(repetition));
+}
+
+}  // namespace
+
+Estimate estimate(std::span<const double> values) {
+    const auto n = static_cast<double>(values.size());
+    double mean = 0.0, square = 0.0;
+    for (const double v : values) mean += v / n;
+    for (const double v : values) square += (v - mean) * (v - mean);
+    return {mean, kStudent * std::sqrt(square / (n * (n - 1.0)))};
+}
+
+Finding measureSeeds(const CheckContext& context, std::string quantity, double expected, double allowance,
+                     double resolution, const std::function<double(std::uint64_t)>& once) {
+    std::array<double, kSeeds> values{};
+    for (int i = 0; i < kSeeds; ++i) values[static_cast<std::size_t>(i)] = once(seedOf(context, i));
+    const Estimate e = estimate(values);
+    const double unit = expected != 0.0 ? std::fabs(expected) : 1.0;
+    return {std::move(quantity), expected, e.mean, e.interval, (allowance + kFloatAllowance) * unit, resolution * unit};
+}
+
+Finding exact(std::string quantity, double expected, double measured, double allowance) {
+    return {std::move(quantity), expected, measured, 0.0, allowance, 0.0};
+}
+
+Settings smallSettings() {
+    Settings s;
+    s.globalPhotons = 30'000;
+    s.gatherRays = 256;
+    return s;
+}
+
+Scene makeScene(const CheckContext& context, SceneDescription description,
+                std::optional<EnvironmentDescription> environment) {
+    return Scene(std::move(description), std::move(environment), SceneOptions{}, context.workers);
+}
+
+RenderResult renderOnce(const CheckContext& context, const Scene& scene, const By& by, const Settings& settings,
+                        int size, std::uint64_t seed) {
+    RenderRequest request;
+    request.method = by.method;
+    request.width = request.height = size;
+    request.seed = seed;
+    request.budget.samples = by.samples;
+    request.settings = settings;
+    return render(scene, request, context.workers);
+}
+
+double meanOf(const Image& image, const std::string& layer) {
+    const int first = image.channel(layer.empty() ? "R" : layer + ".R");
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.pixels(); ++i)
+        for (int c = 0; c < 3; ++c) sum += static_cast<double>(image.at(i, first + c));
+    return sum / (3.0 * static_cast<double>(image.pixels()));
+}
+
+std::vector<Finding> measure(const CheckContext& context, Rendered what) {
+    const Scene scene = makeScene(context, std::move(what.scene), std::move(what.environment));
+    std::vector<Finding> findings;
+    std::uint64_t nonfinite = 0;
+    for (const By& by : what.by) {
+        const std::string layer = by.layer.empty() ? "" : ", " + by.layer;
+        findings.push_back(measureSeeds(context, fmt::format("{}, {}{}", what.quantity, methodName(by.method), layer),
+                                        what.expected, by.bias, by.resolution, [&](std::uint64_t seed) {
+                                            const RenderResult result =
+                                                renderOnce(context, scene, by, what.settings, what.size, seed);
+                                            nonfinite += result.record.nonfinite.count;
+                                            return meanOf(result.image, by.layer) * what.toQuantity;
+                                        }));
+    }
+    if (nonfinite > 0)
+        findings.push_back(exact("samples that are not finite", 0.0, static_cast<double>(nonfinite), 0.0));
+    return findings;
+}
+
+PhotonList causticPhotons(const CheckContext& context, const Scene& scene, std::uint32_t paths, std::uint64_t seed) {
+    const EmissionGuide unguided(scene.lights(), {});
+    const CausticPass pilot =
+        traceCausticPhotons(scene, unguided, {hash64(seed ^ 0x70696c6f74ULL), 0, paths}, nullptr, context.workers);
+    const EmissionGuide guide(scene.lights(), pilot.useful);
+    CausticPass pass = traceCausticPhotons(scene, guide, {seed, 1, paths}, nullptr, context.workers);
+    const Normalisation& n = scene.normalisation();
+    const double s = n.scale();
+    for (Photon& p : pass.photons) {
+        p.position = glm::vec3(glm::dvec3(p.position) / s + n.centre);
+        p.flux *= static_cast<float>(1.0 / (s * s));
+    }
+    return std::move(pass.photons);
+}
+
+}  // namespace pellucid::check

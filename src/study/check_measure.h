@@ -1,0 +1,80 @@
+/// Measuring for the checks: means over independent seeds with their confidence, by any method of the renderer.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <pellucid/render/render.h>
+#include <pellucid/scene/scene.h>
+#include <pellucid/study/check.h>
+#include <pellucid/transport/photon.h>
+
+#include "check_scenes.h"
+
+namespace pellucid::check {
+
+/// Independent repetitions of a measurement.
+inline constexpr int kSeeds = 8;
+/// Student's t for 7 degrees of freedom, two-sided 1e-4: of the whole suite's figures together about one in a hundred
+/// runs with another seed strays by chance.
+inline constexpr double kStudent = 7.885;
+/// What single precision and the ray offset may do to a mean, relative.
+inline constexpr double kFloatAllowance = 1e-4;
+
+struct Estimate {
+    double mean = 0.0, interval = 0.0;
+};
+/// Mean and confidence interval of kSeeds independent values.
+[[nodiscard]] Estimate estimate(std::span<const double> values);
+
+/// A finding from kSeeds calls of `once` with different seeds. Allowance and resolution are relative to `expected`
+/// (absolute where that is 0).
+[[nodiscard]] Finding measureSeeds(const CheckContext& context, std::string quantity, double expected, double allowance,
+                                   double resolution, const std::function<double(std::uint64_t seed)>& once);
+
+/// An exact figure: no statistics, an absolute allowance.
+[[nodiscard]] Finding exact(std::string quantity, double expected, double measured, double allowance);
+
+/// One method's share of a rendered case.
+struct By {
+    Method method = Method::Path;
+    std::uint32_t samples = 16;  ///< a pixel
+    double bias = 0.0;           ///< relative allowance; 0 for unbiased methods
+    double resolution = 0.02;    ///< relative
+    std::string layer = {};      ///< "direct", "caustic", ...; empty: all light
+};
+
+/// A scene that is rendered, and what the mean over its image must be.
+struct Rendered {
+    SceneDescription scene = {};
+    std::optional<EnvironmentDescription> environment = {};
+    double expected = 0.0;
+    double toQuantity = 1.0;  ///< measured = mean radiance x this (pi / reflectance gives irradiance)
+    std::string quantity = "radiance";
+    std::vector<By> by = {};
+    int size = 16;
+    Settings settings = {};
+};
+
+/// Settings for tiny images: few global photons, so that a case takes a moment.
+[[nodiscard]] Settings smallSettings();
+
+/// One finding a method; one more where samples were not finite.
+[[nodiscard]] std::vector<Finding> measure(const CheckContext& context, Rendered what);
+
+/// One render of a scene that stands already.
+[[nodiscard]] RenderResult renderOnce(const CheckContext& context, const Scene& scene, const By& by,
+                                      const Settings& settings, int size, std::uint64_t seed);
+[[nodiscard]] Scene makeScene(const CheckContext& context, SceneDescription description,
+                              std::optional<EnvironmentDescription> environment = std::nullopt);
+/// Mean over the image of a layer (empty: RGB), average of the channels.
+[[nodiscard]] double meanOf(const Image& image, const std::string& layer = {});
+
+/// Caustic photons of one pass, emission guided by what an earlier one found, back in metres and watts.
+[[nodiscard]] PhotonList causticPhotons(const CheckContext& context, const Scene& scene, std::uint32_t paths,
+                                        std::uint64_t seed);
+
+}  // namespace pellucid::check

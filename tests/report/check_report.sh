@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Opens a report.html in headless Chromium, works its controls and holds what it sees: curves drawn, slider moves, the
+# pixel under the pointer is that of the EXR, no console error, no network request.
+# usage: check_report.sh FOLDER-OF-A-COMPARISON   (needs chromium and oiiotool)
+set -euo pipefail
+folder=$(cd "$1" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# The page with a script behind it that acts as a user and writes what it found.
+cp "$folder/report.html" "$work/page.html"
+cat >>"$work/page.html" <<'SCRIPT'
+<script>
+"use strict";
+const found = {};
+found.ready = document.documentElement.dataset.ready === "true";
+found.curves = document.querySelectorAll("#curves path.line").length;
+found.methods = methods.length;
+found.longestCurve = Math.max(...Array.from(document.querySelectorAll("#curves path.line"), p => (p.getAttribute("d") || "").length));
+const divider = document.getElementById("divider"), before = divider.getAttribute("aria-valuenow");
+divider.dispatchEvent(new KeyboardEvent("keydown", {key: "PageUp", bubbles: true}));
+found.sliderMoved = divider.getAttribute("aria-valuenow") !== before;
+for (const mode of ["luminance", "error", "colour"]) { const m = document.getElementById("mode"); m.value = mode; m.onchange(); }
+const exposure = document.getElementById("exposure"); exposure.value = 2; exposure.oninput();
+const box = document.getElementById("canvas").getBoundingClientRect();
+document.getElementById("viewer").dispatchEvent(new PointerEvent("pointermove", {pointerId: 1, clientX: box.left + .3 * box.width, clientY: box.top + .4 * box.height, bubbles: true}));
+found.pixel = JSON.parse(document.getElementById("pixel").dataset.values);
+const l = view.left, run = report.curves.find(r => r.method === l.label && r.budget === l.budget && r.seed === l.seed);
+found.requests = performance.getEntriesByType("resource").map(r => r.name).filter(n => !/^(data|blob):/.test(n));
+found.image = run.image; found.bytes = l.bytes; found.halved = l.halved;
+for (const s of document.querySelectorAll("script[type]")) s.remove();
+document.body.append("FOUND" + JSON.stringify(found) + "END");
+</script>
+SCRIPT
+
+chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
+    --disable-component-update --disable-sync --user-data-dir="$work/profile" --enable-logging=stderr \
+    --host-resolver-rules="MAP * ~NOTFOUND" --virtual-time-budget=5000 --dump-dom "file://$work/page.html" \
+    >"$work/dom.html" 2>"$work/log"
+
+fail() { echo "check_report: $1" >&2; exit 4; }
+! grep 'CONSOLE' "$work/log" || fail "the console is not empty"
+found=$(grep -oE 'FOUND\{.*\}END' "$work/dom.html" | sed 's/^FOUND//; s/END$//') || fail "the script did not finish"
+python3 - "$folder" "$work" "$found" <<'PYTHON'
+import json, struct, subprocess, sys
+folder, work, found = sys.argv[1], sys.argv[2], json.loads(sys.argv[3])
+assert found["ready"], "the page did not finish"
+assert found["curves"] == found["methods"] and found["longestCurve"] > 5, "curves are missing"
+assert not found["requests"], "the page asked for " + str(found["requests"])
+assert found["sliderMoved"], "the slider did not move"
+assert not found["halved"], "this report's pictures are halved: check one with smaller images"
+p = found["pixel"]
+# One pixel as an uncompressed TIFF file of floats: its data stand where tag 273 (StripOffsets) says.
+subprocess.run(["oiiotool", f"{folder}/{found['image']}", "--ch", "R,G,B", "--cut", f"1x1+{p['x']}+{p['y']}", "-d", "float",
+                "--compression", "none", "-o", f"{work}/pixel.tif"], check=True)
+tiff = open(f"{work}/pixel.tif", "rb").read()
+directory = struct.unpack_from("<I", tiff, 4)[0]
+tags = (struct.unpack_from("<HHII", tiff, directory + 2 + 12 * i) for i in range(struct.unpack_from("<H", tiff, directory)[0]))
+exr = struct.unpack_from("<3f", tiff, next(value for tag, kind, count, value in tags if tag == 273))
+tolerance = {4: 0.0, 3: 2.0 ** -16, 2: 2.0 ** -11}[found["bytes"]]
+for shown, value in zip(p["left"], exr):
+    assert abs(shown - value) <= tolerance * abs(value), (p, exr)
+print(f"report: {found['curves']} curves, slider, pixel {p['x']},{p['y']} = {exr} ({found['bytes']} bytes a value), no console output, no request")
+PYTHON
