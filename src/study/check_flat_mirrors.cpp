@@ -57,7 +57,7 @@ std::vector<Finding> lampInMirror(const CheckContext& context) {
                              "irradiance",
                              {{Method::Path, 512, 0.0, 0.06, "caustic"},
                               {Method::Photon, 16, 0.01, 0.03, "caustic"},
-                              {Method::Light, 32, 0.0, 0.04, "caustic"}},
+                              {Method::Light, 96, 0.0, 0.04, "caustic"}},
                              16,
                              smallSettings()});
 }

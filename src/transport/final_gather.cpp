@@ -11,6 +11,9 @@ namespace pellucid {
 
 namespace {
 
+/// Of the least radius: distances below it count as this in the gradient.
+constexpr float kNearestShare = 0.05F;
+
 struct Cell {
     Rgb radiance{0.0F};
     float distance = 0.0F;
@@ -48,8 +51,9 @@ void addRotation(Grid& g, const Frame& frame, IrradianceRecord& record) {
     }
 }
 
-/// Translational: the change of occlusion across the strata's borders, in elevation and in azimuth.
-void addTranslation(Grid& g, const Frame& frame, IrradianceRecord& record) {
+/// Translational: the change of occlusion across the strata's borders, in elevation and in azimuth. Occluders nearer than
+/// `nearestKept` (a record never speaks farther than that from them) would give slopes that no record may use.
+void addTranslation(Grid& g, const Frame& frame, float nearestKept, IrradianceRecord& record) {
     const auto m = static_cast<float>(g.elevations), n = static_cast<float>(g.azimuths);
     const auto lower = [m](int j) { return std::sqrt(static_cast<float>(j) / m); };                                   // sin(theta_j-)
     const auto cosine = [m](int j) { return std::sqrt(std::max(0.0F, 1.0F - static_cast<float>(j) / m)); };           // cos(theta_j-)
@@ -63,12 +67,12 @@ void addTranslation(Grid& g, const Frame& frame, IrradianceRecord& record) {
             const Cell& cell = g.at(j, k);
             if (j > 0) {
                 const Cell& below = g.at(j - 1, k);
-                const float nearest = std::min(cell.distance, below.distance);
+                const float nearest = std::max(nearestKept, std::min(cell.distance, below.distance));
                 if (std::isfinite(nearest))
                     radial += (kTwoPi / n) * cosine(j) * cosine(j) * lower(j) / nearest * (cell.radiance - below.radiance);
             }
             const Cell& side = g.at(j, before);
-            const float nearest = std::min(cell.distance, side.distance);
+            const float nearest = std::max(nearestKept, std::min(cell.distance, side.distance));
             const float sin2 = (static_cast<float>(j) + 0.5F) / m;
             if (std::isfinite(nearest))
                 around += std::sqrt((1.0F - sin2) / sin2) * (cosine(j) - cosine(j + 1)) / nearest * (cell.radiance - side.radiance);
@@ -128,7 +132,7 @@ IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const Gather
         }
     for (glm::length_t c = 0; c < 3; ++c) record.grazingShare[c] = record.irradiance[c] > 0.0F ? grazing[c] / record.irradiance[c] : 0.0F;
     addRotation(grid, frame, record);
-    addTranslation(grid, frame, record);
+    addTranslation(grid, frame, kNearestShare * options.minRadius, record);
     setRadius(grid, options, record);
     return record;
 }
