@@ -59,12 +59,17 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     const auto wanted = static_cast<double>(seen.points.size()) * 1.5;
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
                                               : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
-    if (s.causticRadius > 0.0) plan.causticFootprints = static_cast<float>(s.causticRadius);
+    if (s.causticRadius > 0.0) {
+        plan.adaptiveRadius = false;
+        plan.causticFootprints = static_cast<float>(s.causticRadius);
+    }
     plan.alpha = static_cast<float>(s.alpha);
     if (isOff(s.guiding)) plan.training.clear();
     decide(plan, "caustic map", "on", fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons), isOn(s.causticMap));
     decide(plan, "caustic photons", fmt::format("{} paths an iteration", plan.causticPaths),
-           fmt::format("1.5 a pixel; first kernel radius {:.2f} pixel footprints", plan.causticFootprints), s.causticPhotons >= 0);
+           fmt::format("{:.2g} a pixel", static_cast<double>(plan.causticPaths) / static_cast<double>(seen.points.size())), s.causticPhotons >= 0);
+    decide(plan, "kernel radius", plan.adaptiveRadius ? "pixel by pixel" : fmt::format("{:.2f} pixel footprints", plan.causticFootprints),
+           plan.adaptiveRadius ? "grows until it holds 150 photons or meets an edge" : "asked for", !plan.adaptiveRadius);
     decide(plan, "emission guiding", isOff(s.guiding) ? "off" : "on",
            fmt::format("{} useful starts in {} cells", useful, EmissionGuide(scene.lights(), plan.training).cells()), isOff(s.guiding));
 }
@@ -176,7 +181,7 @@ Settings resolvedSettings(const Settings& asked, const Plan& plan) {
     s.guiding = plan.training.empty() ? "off" : "on";
     s.causticPhotons = static_cast<int>(plan.causticPaths);
     s.globalPhotons = static_cast<int>(plan.globalPaths);
-    s.causticRadius = static_cast<double>(plan.causticFootprints);
+    if (!plan.adaptiveRadius) s.causticRadius = static_cast<double>(plan.causticFootprints);
     s.cacheError = static_cast<double>(plan.cacheError);
     s.gatherRays = plan.gatherRays;
     s.minSpacing = static_cast<double>(plan.minSpacing);

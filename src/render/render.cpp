@@ -8,6 +8,7 @@
 #include <pellucid/render/film.h>
 #include <pellucid/render/plan.h>
 #include <pellucid/transport/caustic_map.h>
+#include <pellucid/transport/kernel_radius.h>
 #include <pellucid/transport/photon_trace.h>
 #include <pellucid/transport/radiance_map.h>
 
@@ -99,6 +100,11 @@ private:
     [[nodiscard]] double elapsed() const { return secondsSince(start_) + request_.budget.startedSecondsAgo; }
     [[nodiscard]] RenderRecord record() const;
     void tell(std::string_view stage) const;
+    /// Iterations 0, 1, 3, 7, ...: guide and radii learn from their photons.
+    [[nodiscard]] bool learningIteration() const noexcept { return (iteration_ & (iteration_ + 1)) == 0; }
+    [[nodiscard]] float kernelFootprints(int x, int y) const noexcept {
+        return (kernelRadii_ ? kernelRadii_->at(x, y) : plan_.causticFootprints) * static_cast<float>(std::sqrt(radiusScale_));
+    }
     void learn(const std::vector<UsefulEmission>& useful);
     void addRecordsLayer(Image& image) const;
     void save() const;
@@ -118,6 +124,7 @@ private:
     Survey survey_;
     Plan plan_;
     std::unique_ptr<EmissionGuide> guide_;
+    std::unique_ptr<KernelRadii> kernelRadii_;  ///< none: one radius for all pixels
     std::unique_ptr<CausticMap> causticMap_;
     std::unique_ptr<RadianceMap> globalMap_;
     std::unique_ptr<IrradianceCache> cache_;
@@ -138,6 +145,7 @@ void Renderer::prepare() {
     plan_ = makePlan(scene_, camera_, request_, survey_, workers_);
     pilotStage_.rays += plan_.pilotRays;
     pilotStage_.photonsEmitted += plan_.pilotPhotons;
+    if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), KernelRadiusOptions{});
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
 }
 
@@ -186,7 +194,7 @@ void Renderer::renewGeneration() {
 }
 
 void Renderer::learn(const std::vector<UsefulEmission>& useful) {
-    if (request_.settings.guiding == "off" || plan_.training.size() >= kTrainingLimit || (iteration_ & (iteration_ + 1)) != 0) return;
+    if (request_.settings.guiding == "off" || plan_.training.size() >= kTrainingLimit || !learningIteration()) return;
     plan_.training = useful;
     guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
 }
@@ -202,7 +210,7 @@ void Renderer::causticPass() {
     context_.maps.caustic = causticMap_.get();
     // r^2_{i+1} = r^2_i (i + alpha) / (i + 1) [KnausZwicker2011]
     if (iteration_ > 0) radiusScale_ *= (iteration_ + static_cast<double>(plan_.alpha)) / (iteration_ + 1.0);
-    context_.maps.causticFootprints = plan_.causticFootprints * static_cast<float>(std::sqrt(radiusScale_));
+    if (kernelRadii_ && learningIteration()) kernelRadii_->learn(*causticMap_, survey_.points, workers_);
     context_.maps.causticRadiusMin = 4e-6F;
     context_.maps.causticRadiusMax = kMaxCausticRadius * scene_.radius();
 }
@@ -231,7 +239,8 @@ void Renderer::eyePass() {
                 const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
                 const CameraRay ray = camera_.ray(glm::vec2(static_cast<float>(x), static_cast<float>(y)) + jitter, lens);
                 FirstHit first;
-                const LayeredRadiance radiance = walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread}, sampler, &first);
+                const LayeredRadiance radiance =
+                    walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), false, kernelFootprints(x, y)}, sampler, &first);
                 film_.add(pixel, film_.samples(), radiance, first);
             }
         rays[tile] = walk.rays();
@@ -341,9 +350,12 @@ void Renderer::resume() {
     }
     for (iteration_ = 0; iteration_ < state->iteration; ++iteration_) {
         if (plan_.causticMap && iteration_ > 0) radiusScale_ *= (iteration_ + static_cast<double>(plan_.alpha)) / (iteration_ + 1.0);
-        if ((iteration_ & (iteration_ + 1)) != 0 || !guide_) continue;
-        if (plan_.causticMap)
-            learn(traceCausticPhotons(scene_, *guide_, {request_.seed, kCausticPass + iteration_, plan_.causticPaths}, &survey_.visible, workers_).useful);
+        if (!learningIteration() || !guide_) continue;
+        if (plan_.causticMap) {
+            CausticPass pass = traceCausticPhotons(scene_, *guide_, {request_.seed, kCausticPass + iteration_, plan_.causticPaths}, &survey_.visible, workers_);
+            learn(pass.useful);
+            if (kernelRadii_) kernelRadii_->learn(CausticMap(std::move(pass.photons)), survey_.points, workers_);
+        }
         if (plan_.lightPass)
             learn(traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_).useful);
     }

@@ -12,24 +12,50 @@ namespace {
 constexpr float kMinNormalCosine = 0.5F;
 constexpr float kMaxPlaneDistance = 0.3F;  ///< of the radius
 
-/// Sums the kernel while nanoflann visits; never full, so that every photon within the radius is seen.
-struct KernelSum {
-    const PhotonList& photons;
-    glm::vec3 point, normal, shadingNormal;
-    const DiffuseLobe& lobe;
-    float radius2;
-    glm::dvec3 sum{0.0};
+/// Whether a photon lies on the surface of the query.
+[[nodiscard]] bool sameSurface(const Photon& p, const glm::vec3& point, const glm::vec3& normal, float radius2) noexcept {
+    if (glm::dot(p.normal, normal) < kMinNormalCosine) return false;
+    const float height = glm::dot(p.position - point, normal);
+    return height * height <= kMaxPlaneDistance * kMaxPlaneDistance * radius2;
+}
 
+/// A result set that is never full, so that every photon within the radius is seen.
+struct WithinRadius {
+    float radius2;
     void init() noexcept {}
     [[nodiscard]] std::size_t size() const noexcept { return 0; }
     [[nodiscard]] bool full() const noexcept { return true; }
     [[nodiscard]] float worstDist() const noexcept { return radius2; }
+};
+
+struct CountFlux : WithinRadius {
+    const PhotonList& photons;
+    glm::vec3 point, normal;
+    FluxSums sums{};
+
+    CountFlux(const PhotonList& list, const glm::vec3& p, const glm::vec3& n, float r2) : WithinRadius{r2}, photons(list), point(p), normal(n) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
-        if (distance2 >= radius2) return true;
         const Photon& p = photons[index];
-        if (glm::dot(p.normal, normal) < kMinNormalCosine) return true;
-        const float height = glm::dot(p.position - point, normal);
-        if (height * height > kMaxPlaneDistance * kMaxPlaneDistance * radius2) return true;
+        if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
+        const auto flux = static_cast<double>(luminance(p.flux));
+        sums.sum += flux;
+        sums.squares += flux * flux;
+        return true;
+    }
+};
+
+/// Sums the kernel while nanoflann visits.
+struct KernelSum : WithinRadius {
+    const PhotonList& photons;
+    glm::vec3 point, normal, shadingNormal;
+    const DiffuseLobe& lobe;
+    glm::dvec3 sum{0.0};
+
+    KernelSum(const PhotonList& list, const glm::vec3& p, const glm::vec3& ng, const glm::vec3& ns, const DiffuseLobe& l, float r2)
+        : WithinRadius{r2}, photons(list), point(p), normal(ng), shadingNormal(ns), lobe(l) {}
+    bool addPoint(float distance2, std::uint32_t index) noexcept {
+        const Photon& p = photons[index];
+        if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
         float weight = 1.0F - distance2 / radius2;
         if (lobe.b != 0.0F) weight *= lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal)));
         sum += glm::dvec3(p.flux * weight);
@@ -54,9 +80,15 @@ CausticMap::CausticMap(CausticMap&&) noexcept = default;
 
 Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
                            const DiffuseLobe& lobe, float radius) const noexcept {
-    KernelSum result{impl_->photons, point, geometricNormal, shadingNormal, lobe, radius * radius};
+    KernelSum result(impl_->photons, point, geometricNormal, shadingNormal, lobe, radius * radius);
     impl_->tree.search(point, result);
     return Rgb(result.sum * (2.0 / (kPiD * static_cast<double>(radius) * static_cast<double>(radius))));
+}
+
+FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept {
+    CountFlux result(impl_->photons, point, geometricNormal, radius * radius);
+    impl_->tree.search(point, result);
+    return result.sums;
 }
 
 std::size_t CausticMap::size() const noexcept { return impl_->photons.size(); }

@@ -32,6 +32,13 @@ struct Grid {
     [[nodiscard]] Cell& at(int j, int k) noexcept { return cells[static_cast<std::size_t>(k) * static_cast<std::size_t>(elevations) + static_cast<std::size_t>(j)]; }
 };
 
+[[nodiscard]] constexpr float square(float x) noexcept { return x * x; }
+
+/// The gradient of the mean over the colour channels.
+[[nodiscard]] glm::vec3 meanSlope(const IrradianceRecord& record) noexcept {
+    return (record.translation[0] + record.translation[1] + record.translation[2]) * (1.0F / 3.0F);
+}
+
 /// Rotational: dE = sum_k v(phi_k + pi/2) sum_j tan(theta_j) L_jk pi/(MN).
 void addRotation(Grid& g, const Frame& frame, IrradianceRecord& record) {
     const float norm = kPi / static_cast<float>(g.elevations * g.azimuths);
@@ -57,28 +64,38 @@ void addTranslation(Grid& g, const Frame& frame, float nearestKept, IrradianceRe
     const auto m = static_cast<float>(g.elevations), n = static_cast<float>(g.azimuths);
     const auto lower = [m](int j) { return std::sqrt(static_cast<float>(j) / m); };                                   // sin(theta_j-)
     const auto cosine = [m](int j) { return std::sqrt(std::max(0.0F, 1.0F - static_cast<float>(j) / m)); };           // cos(theta_j-)
+    float noise = 0.0F;
     for (int k = 0; k < g.azimuths; ++k) {
         const int before = (k + g.azimuths - 1) % g.azimuths;
         const float phi = kTwoPi * (static_cast<float>(k) + 0.5F) / n, border = kTwoPi * static_cast<float>(k) / n;
         const glm::vec3 u = frame.toWorld({std::cos(phi), std::sin(phi), 0.0F});
         const glm::vec3 v = frame.toWorld({-std::sin(border), std::cos(border), 0.0F});
         Rgb radial(0.0F), around(0.0F);
+        const auto add = [&noise](Rgb& sum, float factor, const Rgb& step) {
+            sum += factor * step;
+            noise += square(factor * average(step));
+        };
         for (int j = 0; j < g.elevations; ++j) {
             const Cell& cell = g.at(j, k);
             if (j > 0) {
                 const Cell& below = g.at(j - 1, k);
                 const float nearest = std::max(nearestKept, std::min(cell.distance, below.distance));
                 if (std::isfinite(nearest))
-                    radial += (kTwoPi / n) * cosine(j) * cosine(j) * lower(j) / nearest * (cell.radiance - below.radiance);
+                    add(radial, (kTwoPi / n) * cosine(j) * cosine(j) * lower(j) / nearest, cell.radiance - below.radiance);
             }
             const Cell& side = g.at(j, before);
             const float nearest = std::max(nearestKept, std::min(cell.distance, side.distance));
             const float sin2 = (static_cast<float>(j) + 0.5F) / m;
             if (std::isfinite(nearest))
-                around += std::sqrt((1.0F - sin2) / sin2) * (cosine(j) - cosine(j + 1)) / nearest * (cell.radiance - side.radiance);
+                add(around, std::sqrt((1.0F - sin2) / sin2) * (cosine(j) - cosine(j + 1)) / nearest, cell.radiance - side.radiance);
         }
         for (glm::length_t c = 0; c < 3; ++c) record.translation[static_cast<std::size_t>(c)] += u * radial[c] + v * around[c];
     }
+    // Were every step across a border noise, the squared length would be about the sum of the squared steps: keep only what
+    // exceeds it, as a positive-part James-Stein estimator does. [JamesStein1961]
+    const float length2 = square(glm::length(meanSlope(record)));
+    const float kept = length2 > 0.0F ? std::max(0.0F, 1.0F - noise / length2) : 0.0F;
+    for (glm::vec3& t : record.translation) t *= kept;
 }
 
 /// R: harmonic mean of the distances, not above E / |grad E|, within the bounds.
@@ -89,9 +106,7 @@ void setRadius(Grid& g, const GatherOptions& options, IrradianceRecord& record) 
     const double harmonic = inverse > 0.0 ? static_cast<double>(g.cells.size()) / inverse : 1e6;
     record.harmonicDistance = static_cast<float>(std::min(harmonic, 1e6));
     float radius = record.harmonicDistance;
-    glm::vec3 gradient(0.0F);
-    for (const glm::vec3& t : record.translation) gradient += t * (1.0F / 3.0F);
-    const float slope = glm::length(gradient);
+    const float slope = glm::length(meanSlope(record));
     if (slope > 0.0F) radius = std::min(radius, average(record.irradiance) / slope);
     record.radius = std::clamp(radius, options.minRadius, options.maxRadius);
     // A gradient that belongs to a smaller distance than the record's reach must not be carried that far. [Krivanek2006]

@@ -53,11 +53,13 @@ struct Arrival {
     return Arrival{*hit, bsdf, wi, std::fabs(glm::dot(wi, bsdf.shadingNormal())) / geometric};
 }
 
-/// Scatters flux among `kinds`; the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]
-[[nodiscard]] inline bool scatter(const Scene& scene, LightPath& path, const Arrival& a, LobeKinds kinds, Sampler& sampler) noexcept {
+/// Scatters flux among `kinds` (`by` receives the lobe's own); the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]
+[[nodiscard]] inline bool scatter(const Scene& scene, LightPath& path, const Arrival& a, LobeKinds kinds, Sampler& sampler,
+                                  LobeKinds* by = nullptr) noexcept {
     const float chooseLobe = sampler.next1D();
     const auto sample = a.bsdf.sample(a.wi, chooseLobe, sampler.next2D(), kinds, TransportMode::Flux);
     if (!sample) return false;
+    if (by != nullptr) *by = sample->kind;
     const float shadingOut = std::fabs(glm::dot(sample->wi, a.bsdf.shadingNormal()));
     const float geometricOut = std::fabs(glm::dot(sample->wi, a.bsdf.geometricNormal()));
     if (!(shadingOut > 0.0F)) return false;

@@ -68,15 +68,18 @@ GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, cons
         const auto start = unguided.sample(sampler);
         if (!start) return;
         LightPath path{start->emission.ray, start->emission.flux};
+        auto arrived = Arrived::Directly;
         for (;;) {
             ++out.rays;
             const auto a = arrive(scene, path, sampler);
             if (!a) break;
             if (receives(*a)) {
                 const Photon photon = photonOf(*a, path.flux, perPath);
-                if (usable(photon)) out.photons.push_back({photon, a->bsdf.shadingNormal(), a->bsdf.diffuse(), path.vertices == 1});
+                if (usable(photon)) out.photons.push_back({photon, a->bsdf.shadingNormal(), a->bsdf.diffuse(), arrived});
             }
-            if (!scatter(scene, path, *a, kAllLobes, sampler)) break;
+            LobeKinds by = kNoLobe;
+            if (!scatter(scene, path, *a, kAllLobes, sampler, &by)) break;
+            arrived = by == kSpecular && arrived != Arrived::Otherwise ? Arrived::OverSpecular : Arrived::Otherwise;
         }
     });
     GlobalPass pass;

@@ -47,6 +47,7 @@ struct Walk::State {
     float etaScale = 1.0F, pathLength = 0.0F;
     int vertices = 0;
     bool gathering = false;          ///< behind the first D vertex: the global map may answer
+    bool causticServed = false;      ///< at this D vertex: what comes over S alone is counted
     bool straight = true;            ///< the eye saw its first X vertex without any S before it
 
     /// Whether a lamp that is met now belongs to path tracing.
@@ -109,11 +110,17 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
                 state.radiance[PathClass::Indirect] += state.throughput * outgoing * found->irradiance;
                 return kNoLobe;
             }
+            // Near a corner all but the caustics, which path tracing hardly finds, goes on.
+            if (found && maps.caustic != nullptr) {
+                state.radiance[PathClass::Indirect] += state.throughput * outgoing * found->caustic;
+                state.causticServed = true;
+            }
         }
         return kDiffuse;
     }
     if (maps.caustic != nullptr) {
-        const float radius = glm::clamp(maps.causticFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
+        const float radius = glm::clamp(state.ray.kernelFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
+        state.causticServed = true;
         if (first != nullptr && state.vertices == 1) first->kernelRadius = radius;
         const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius);
         state.radiance[state.ledger.atLightAfter(false) == PathClass::Direct ? PathClass::Caustic : PathClass::Indirect] +=
@@ -194,8 +201,7 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     if (casts && state.ledger.atLight() == PathClass::Emission) state.straight = false;
     state.ledger.pass(casts);
     if (kind == kDiffuse) {
-        // Only the first receiver reads the caustic map; a receiver that the global map did not serve is path traced.
-        state.behind = context_.maps.caustic != nullptr && !state.gathering ? Behind::CausticMapped : Behind::PathTraced;
+        state.behind = state.causticServed ? Behind::CausticMapped : Behind::PathTraced;
         state.chainEmpty = state.chainSpecular = true;
         state.gathering = true;
         state.skipDirect = false;
@@ -257,6 +263,7 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     if (kinds == kNoLobe || (context_.options.maxDepth > 0 && state.vertices > context_.options.maxDepth)) return false;
     LobeKinds sampled = kinds & (kSpecular | kGlossy);
     LobeKinds direct = kinds;
+    state.causticServed = false;
     sampler.setDimension(dimension + kCorner);
     if ((kinds & kDiffuse) != kNoLobe) {
         const LobeKinds carried = serveDiffuse(state, vertex, sampler, first);

@@ -26,7 +26,8 @@ struct Plan {
     bool causticMap = false, globalMap = false, cache = false, lightPass = false;
     std::uint32_t causticPaths = 0;      ///< an iteration
     std::uint32_t globalPaths = 0;       ///< a generation of the cache
-    float causticFootprints = 2.5F;      ///< kernel radius of the first iteration
+    bool adaptiveRadius = true;          ///< of the caustic kernel, pixel by pixel
+    float causticFootprints = 2.5F;      ///< kernel radius of the first iteration where it is not
     float alpha = 2.0F / 3.0F;
     float cacheError = 0.25F;
     int gatherRays = 512;

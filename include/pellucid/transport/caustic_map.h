@@ -10,6 +10,11 @@
 
 namespace pellucid {
 
+/// Flux (luminance) of photons, and its squares: how much, and in how many portions.
+struct FluxSums {
+    double sum = 0.0, squares = 0.0;
+};
+
 class CausticMap {
 public:
     explicit CausticMap(PhotonList photons);
@@ -20,6 +25,9 @@ public:
     /// E = sum dPhi T(wi.n) K(d/r) / (pi r^2), Epanechnikov kernel K = 2 (1 - d^2/r^2). [Jensen1996], [Silverman1986]
     [[nodiscard]] Rgb irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
                                  const DiffuseLobe& lobe, float radius) const noexcept;
+
+    /// What arrived within `radius` on the side of the normal.
+    [[nodiscard]] FluxSums fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept;
 
     [[nodiscard]] std::size_t size() const noexcept;
 

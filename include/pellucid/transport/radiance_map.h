@@ -1,9 +1,12 @@
 /// The global photon map as gather rays read it: irradiance precomputed at a subset of the photons' positions
 /// [Christensen1999], found by the nearest one. Direct light there is sampled from the lamps (no blur, no loss at edges);
-/// all other light is estimated from the photons. Bias enters by the kernel of that estimate and by the nearest-point look-up.
+/// all other light is estimated from the photons that the point could reach along the surface, over the area that it could
+/// reach: short rays in eight sectors end the kernel at walls, so that light neither leaks through them nor is lost beside
+/// them. Bias enters by the kernel of that estimate and by the nearest-point look-up.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -13,12 +16,15 @@
 
 namespace pellucid {
 
-/// One photon of the global pass: L (S|G|D)* D. `direct`: it came straight from the lamp.
+/// How a photon of the global pass came: L D, L S+ D, or any other way.
+enum class Arrived : std::uint8_t { Directly, OverSpecular, Otherwise };
+
+/// One photon of the global pass: L (S|G|D)* D.
 struct GlobalPhoton {
     Photon photon;
     glm::vec3 shadingNormal{0.0F};
     DiffuseLobe lobe;         ///< of the surface it landed on, for the directional weight
-    bool direct = false;
+    Arrived arrived = Arrived::Otherwise;
 };
 
 struct RadianceMapOptions {
@@ -33,6 +39,7 @@ class RadianceMap {
 public:
     struct Found {
         Rgb irradiance{0.0F};  ///< W m^-2, weighted by T(wi) of the surface's diffuse lobe
+        Rgb caustic{0.0F};     ///< the part of it that came L S+ D
         float radius = 0.0F;   ///< of the density estimate that made it, scene units
     };
 

@@ -20,7 +20,6 @@ struct Maps {
     const CausticMap* caustic = nullptr;
     const RadianceMap* global = nullptr;
     const IrradianceCache* cache = nullptr;
-    float causticFootprints = 1.0F;   ///< kernel radius in pixel footprints
     float causticRadiusMin = 0.0F;    ///< in scene units
     float causticRadiusMax = 1.0F;
 };
@@ -63,6 +62,7 @@ struct WalkRay {
     float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;
     Rgb absorption{0.0F};             ///< of the medium, per scene unit
     bool mediumKnown = false;         ///< false: taken from the first surface that is hit from inside
+    float kernelFootprints = 1.0F;    ///< radius of the caustic kernel, in pixel footprints
 };
 
 class Walk {

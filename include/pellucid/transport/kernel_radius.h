@@ -1,0 +1,43 @@
+/// The radius of the caustic kernel, pixel by pixel, from the photons themselves: it grows until it holds enough photons, or
+/// until the ring that would be added does not look like the disc inside (Lepski's method: the largest radius at which no
+/// smaller one contradicts the estimate). So an even glow is averaged over many pixels and a sharp edge over hardly one.
+/// Bias enters here: what the test cannot tell from even light is blurred. [Lepski1991]
+#pragma once
+
+#include <vector>
+
+#include <pellucid/base/parallel.h>
+#include <pellucid/transport/caustic_map.h>
+#include <pellucid/transport/walk.h>
+
+namespace pellucid {
+
+struct KernelRadiusOptions {
+    float smallest = 0.7F, largest = 12.0F;  ///< in pixel footprints
+    double enough = 150.0;                   ///< photons (of equal power) that a kernel needs to hold
+};
+
+/// The radius at `point`, in footprints.
+[[nodiscard]] float chooseKernelRadius(const CausticMap& map, const GatherPoint& point, const KernelRadiusOptions& options) noexcept;
+
+/// Radii of all pixels: running means, in the logarithm, over the passes that they were chosen from.
+class KernelRadii {
+public:
+    KernelRadii(int width, int height, const KernelRadiusOptions& options);
+
+    /// Adds what `map` says at the survey's points.
+    void learn(const CausticMap& map, const std::vector<GatherPoint>& points, const Workers& workers);
+    /// In footprints.
+    [[nodiscard]] float at(int x, int y) const noexcept {
+        return radii_[static_cast<std::size_t>(y / kBlock) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(x / kBlock)];
+    }
+
+private:
+    static constexpr int kBlock = 2;     ///< pixels that share a radius, a side
+    int width_, height_, blocksX_, blocksY_, passes_ = 0;
+    KernelRadiusOptions options_;
+    std::vector<float> logSum_;          ///< by block; over passes
+    std::vector<float> radii_;           ///< by block; the mean, smoothed
+};
+
+}  // namespace pellucid

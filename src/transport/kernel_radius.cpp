@@ -1,0 +1,68 @@
+#include <pellucid/transport/kernel_radius.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pellucid {
+
+namespace {
+
+constexpr float kGrowth = 1.4F;
+/// Standard deviations by which disc and ring may differ (a few tests in a row: p about 0.01 each).
+constexpr double kContradiction = 2.5;
+
+[[nodiscard]] double equalPhotons(const FluxSums& s) noexcept { return s.squares > 0.0 ? s.sum * s.sum / s.squares : 0.0; }
+
+/// Whether the flux densities of disc and ring differ by more than their shot noise, pooled.
+[[nodiscard]] bool contradicts(const FluxSums& disc, double discArea, const FluxSums& both, double bothArea) noexcept {
+    const double ringArea = bothArea - discArea;
+    const double difference = disc.sum / discArea - (both.sum - disc.sum) / ringArea;
+    const double rate = both.squares / bothArea;
+    return difference * difference > kContradiction * kContradiction * rate * (1.0 / discArea + 1.0 / ringArea);
+}
+
+}  // namespace
+
+float chooseKernelRadius(const CausticMap& map, const GatherPoint& point, const KernelRadiusOptions& options) noexcept {
+    float radius = options.smallest;
+    const auto scaled = [&](float r) { return r * point.footprint; };
+    FluxSums disc = map.fluxWithin(point.position, point.geometricNormal, scaled(radius));
+    while (radius < options.largest && equalPhotons(disc) < options.enough) {
+        const float next = std::min(radius * kGrowth, options.largest);
+        const FluxSums both = map.fluxWithin(point.position, point.geometricNormal, scaled(next));
+        if (contradicts(disc, static_cast<double>(radius) * radius, both, static_cast<double>(next) * next)) break;
+        radius = next;
+        disc = both;
+    }
+    return radius;
+}
+
+KernelRadii::KernelRadii(int width, int height, const KernelRadiusOptions& options)
+    : width_(width), height_(height), blocksX_((width + kBlock - 1) / kBlock), blocksY_((height + kBlock - 1) / kBlock), options_(options),
+      logSum_(static_cast<std::size_t>(blocksX_) * static_cast<std::size_t>(blocksY_), 0.0F), radii_(logSum_.size(), options.smallest) {}
+
+void KernelRadii::learn(const CausticMap& map, const std::vector<GatherPoint>& points, const Workers& workers) {
+    ++passes_;
+    const auto blockOf = [this](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(x); };
+    workers.forEach(logSum_.size(), 256, [&](std::size_t block) {
+        const int x0 = static_cast<int>(block) % blocksX_ * kBlock, y0 = static_cast<int>(block) / blocksX_ * kBlock;
+        // Another pixel of the block each time.
+        const int x = std::min(x0 + (passes_ & 1), width_ - 1), y = std::min(y0 + (passes_ >> 1 & 1), height_ - 1);
+        const GatherPoint& p = points[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+        const float radius = p.valid && p.footprint > 0.0F ? chooseKernelRadius(map, p, options_) : options_.smallest;
+        logSum_[block] += std::log(radius);
+    });
+    // The median of nine neighbours takes out what single photons did.
+    workers.forEach(radii_.size(), 256, [&](std::size_t block) {
+        const int bx = static_cast<int>(block) % blocksX_, by = static_cast<int>(block) / blocksX_;
+        std::array<float, 9> near{};
+        std::size_t n = 0;
+        for (int y = std::max(0, by - 1); y <= std::min(blocksY_ - 1, by + 1); ++y)
+            for (int x = std::max(0, bx - 1); x <= std::min(blocksX_ - 1, bx + 1); ++x) near[n++] = logSum_[blockOf(x, y)];
+        std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(n / 2), near.begin() + static_cast<std::ptrdiff_t>(n));
+        radii_[block] = std::exp(near[n / 2] / static_cast<float>(passes_));
+    });
+}
+
+}  // namespace pellucid
