@@ -30,10 +30,10 @@ constexpr std::size_t kFirstBatch = 64;
 
 }  // namespace
 
-CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, float error, std::uint64_t seed,
+CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, const GenerationSize& size, std::uint64_t seed,
                       const Workers& workers, const std::function<bool()>& stop) {
     CacheBuild build;
-    const float read = error * kReadSlack;
+    const float error = size.cacheError, read = error * kReadSlack;
     build.cache = std::make_unique<IrradianceCache>(context.scene.bounds(), read);
     IrradianceCache& cache = *build.cache;
     for (int stride = kCoarsestStride; stride >= 1; stride /= 2) {
@@ -55,7 +55,7 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
             workers.forEach(misses.size(), 1, [&](std::size_t i) {
                 const GatherPoint& p = seen.points[misses[i]];
                 Walk walk(context);
-                const GatherOptions options{plan.gatherRays, plan.minSpacing * p.footprint / error, plan.maxSpacing * p.footprint / error, seed};
+                const GatherOptions options{size.gatherRays, plan.minSpacing * p.footprint / error, plan.maxSpacing * p.footprint / error, seed};
                 records[i] = gatherRecord(walk, p, options, misses[i]);
                 rays[i] = walk.rays();
             });

@@ -15,8 +15,8 @@ struct CacheBuild {
     std::uint64_t rays = 0;
 };
 
-/// `error` is Ward's a of this generation; look-ups while rendering use a little more, so that few points miss.
-[[nodiscard]] CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, float error,
+/// `size` gives Ward's a of this generation; look-ups while rendering use a little more, so that few points miss.
+[[nodiscard]] CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, const GenerationSize& size,
                                     std::uint64_t seed, const Workers& workers, const std::function<bool()>& stop);
 
 }  // namespace pellucid

@@ -12,7 +12,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr char kMagic[] = "pellucid checkpoint 1\n";
+constexpr char kMagic[] = "pellucid checkpoint 2\n";
 
 [[nodiscard]] std::uint64_t checksum(const std::string& bytes) noexcept {
     std::uint64_t sum = bytes.size();
@@ -59,8 +59,10 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     put(body, state.generation);
     put(body, state.raysOfGeneration);
     put(body, state.raysSince);
-    put(body, static_cast<std::uint64_t>(state.film.size()));
-    body.append(state.film.begin(), state.film.end());
+    for (const std::vector<char>* block : {&state.film, &state.training, &state.radii}) {
+        put(body, static_cast<std::uint64_t>(block->size()));
+        body.append(block->begin(), block->end());
+    }
     std::string head = kMagic;
     put(head, checksum(body));
     const std::filesystem::path temporary = file.string() + ".tmp";
@@ -96,9 +98,11 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     state.generation = reader.get<std::uint32_t>();
     state.raysOfGeneration = reader.get<double>();
     state.raysSince = reader.get<double>();
-    const std::string film = reader.text(reader.get<std::uint64_t>());
+    for (std::vector<char>* block : {&state.film, &state.training, &state.radii}) {
+        const std::string bytes = reader.text(reader.get<std::uint64_t>());
+        block->assign(bytes.begin(), bytes.end());
+    }
     if (!reader.good) throw damaged(file);
-    state.film.assign(film.begin(), film.end());
     return state;
 }
 

@@ -18,6 +18,7 @@ struct CheckpointState {
     std::uint32_t iteration = 0, generation = 0;
     double raysOfGeneration = 0.0, raysSince = 0.0;
     std::vector<char> film;
+    std::vector<char> training, radii;  ///< what guide and kernel radii have learnt
 };
 
 void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key, const CheckpointState& state);

@@ -35,7 +35,7 @@ void Film::add(std::size_t pixel, std::uint32_t sample, const LayeredRadiance& r
         for (glm::length_t c = 0; c < 3; ++c) p.layer[l][c] += static_cast<double>(radiance.layer[l][c]);
     if ((sample & 1U) != 0)
         for (glm::length_t c = 0; c < 3; ++c) p.half[c] += static_cast<double>(total[c]);
-    const double y = static_cast<double>(luminance(total));
+    const double y = static_cast<double>(pellucid::luminance(total));
     p.square += y * y;
     for (glm::length_t c = 0; c < 3; ++c) {
         p.albedo[c] += first.albedo[c];
@@ -69,6 +69,20 @@ Rgb Film::mean(const Pixel& p, int layer) const noexcept {
         value[c] = static_cast<float>(v);
     }
     return value;
+}
+
+double Film::luminance(int x, int y) const noexcept {
+    const Pixel& p = pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+    Rgb sum(0.0F);
+    for (int l = 0; l < kPathClasses; ++l) sum += mean(p, l);
+    return static_cast<double>(pellucid::luminance(sum));
+}
+
+double Film::meanLuminance() const noexcept {
+    double sum = 0.0;
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) sum += luminance(x, y);
+    return sum / static_cast<double>(std::max<std::size_t>(1, pixels_.size()));
 }
 
 Image Film::image(const std::vector<std::string>& layers) const {

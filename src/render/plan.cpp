@@ -16,8 +16,11 @@ namespace {
 /// Pilot photons, then again this many times more where the first saw nothing useful.
 constexpr std::uint32_t kPilotPaths = 60'000;
 constexpr std::uint32_t kPilotRetryFactor = 10;
-constexpr std::size_t kEnoughUseful = 400;
+constexpr double kEnoughUseful = 400;
+constexpr std::uint64_t kPilotRounds = 6;
 constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
+constexpr std::uint32_t kGlobalPaths = 75'000;
+constexpr double kPathsPerPixel = 0.5;  ///< caustic photon paths an iteration
 constexpr double kDefaultTimeCap = 120.0;
 
 [[nodiscard]] bool isOff(const std::string& choice) { return choice == "off"; }
@@ -32,15 +35,17 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
                                         const Workers& workers) {
     std::vector<UsefulEmission> useful;
     std::uint32_t paths = kPilotPaths;
-    for (std::uint64_t attempt = 0; attempt < 3; ++attempt) {
+    for (std::uint64_t attempt = 0; attempt < kPilotRounds; ++attempt) {
         const EmissionGuide guide(scene.lights(), useful);
-        const CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible, workers);
+        CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible, workers);
         plan.pilotRays += pass.rays;
         plan.pilotPhotons += pass.emitted;
-        // The guided second look replaces the first: its sample is the better one.
-        useful = pass.useful;
-        if (useful.empty()) paths = kPilotPaths * kPilotRetryFactor;
-        if (attempt > 0 && (useful.size() >= kEnoughUseful || useful.empty())) break;
+        // Each guided look replaces the one before: its sample is the better one. Enough when it hardly finds more.
+        const auto before = static_cast<double>(useful.size()), now = static_cast<double>(pass.useful.size());
+        useful = std::move(pass.useful);
+        if (now == 0.0 && attempt > 0) break;
+        if (now == 0.0) paths = kPilotPaths * kPilotRetryFactor;
+        else if (now >= kEnoughUseful && now < 1.3 * before) break;
     }
     plan.training = std::move(useful);
     return plan.training.size();
@@ -56,7 +61,7 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     if (useful == 0 && !isOn(s.causticMap))
         return decide(plan, "caustic map", "off", fmt::format("0 of {} pilot photons arrived where the camera looks", plan.pilotPhotons));
     plan.causticMap = true;
-    const auto wanted = static_cast<double>(seen.points.size()) * 1.5;
+    const auto wanted = static_cast<double>(seen.points.size()) * kPathsPerPixel;
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
                                               : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
     if (s.causticRadius > 0.0) {
@@ -69,7 +74,7 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     decide(plan, "caustic photons", fmt::format("{} paths an iteration", plan.causticPaths),
            fmt::format("{:.2g} a pixel", static_cast<double>(plan.causticPaths) / static_cast<double>(seen.points.size())), s.causticPhotons >= 0);
     decide(plan, "kernel radius", plan.adaptiveRadius ? "pixel by pixel" : fmt::format("{:.2f} pixel footprints", plan.causticFootprints),
-           plan.adaptiveRadius ? "grows until it holds 150 photons or meets an edge" : "asked for", !plan.adaptiveRadius);
+           plan.adaptiveRadius ? "grows until it holds 60 photons or meets an edge" : "asked for", !plan.adaptiveRadius);
     decide(plan, "emission guiding", isOff(s.guiding) ? "off" : "on",
            fmt::format("{} useful starts in {} cells", useful, EmissionGuide(scene.lights(), plan.training).cells()), isOff(s.guiding));
 }
@@ -86,7 +91,9 @@ void planIndirect(Plan& plan, const RenderRequest& request, const Survey& seen) 
         return;
     }
     plan.cache = plan.globalMap = true;
-    plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons) : 150'000U;
+    plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons) : kGlobalPaths;
+    plan.growPhotons = s.globalPhotons < 0;
+    plan.growRays = s.gatherRays <= 0;
     plan.globalMap = plan.globalPaths > 0;
     if (s.cacheError > 0.0) plan.cacheError = static_cast<float>(s.cacheError);
     if (s.gatherRays > 0) plan.gatherRays = s.gatherRays;
@@ -94,7 +101,7 @@ void planIndirect(Plan& plan, const RenderRequest& request, const Survey& seen) 
     if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
     const double share = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
     decide(plan, "irradiance cache", "on", fmt::format("{:.1f} % of the pixels end at a diffuse surface", share), isOn(s.cache));
-    decide(plan, "global map", plan.globalMap ? "on" : "off", fmt::format("{} photon paths for each generation of records", plan.globalPaths), s.globalPhotons >= 0);
+    decide(plan, "global map", plan.globalMap ? "on" : "off", fmt::format("{} photon paths for the first generation of records{}", plan.globalPaths, plan.growPhotons ? ", half as many more for each next" : ""), s.globalPhotons >= 0);
 }
 
 /// Which classes the method cannot see: no sampler of its makes such a path.
@@ -143,6 +150,16 @@ Survey survey(const TransportContext& context, const Camera& camera, std::uint64
     for (const GatherPoint& p : s.points)
         if (p.valid) s.visible.mark(p.position);
     return s;
+}
+
+GenerationSize Plan::generation(std::uint32_t number) const noexcept {
+    constexpr double kPhotonGrowth = 1.5, kErrorPower = 0.25, kMostPhotons = 1e7;
+    constexpr std::uint32_t kRayDoublings = 2;
+    GenerationSize size{globalPaths, gatherRays, 0.0F};
+    if (growPhotons) size.globalPaths = static_cast<std::uint32_t>(std::min(globalPaths * std::pow(kPhotonGrowth, number), kMostPhotons));
+    if (growRays) size.gatherRays <<= std::min(number, kRayDoublings);
+    size.cacheError = static_cast<float>(static_cast<double>(cacheError) * std::pow(number + 1.0, -kErrorPower));
+    return size;
 }
 
 Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen, const Workers& workers) {

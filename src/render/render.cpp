@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 #include <pellucid/base/error.h>
@@ -25,10 +26,14 @@ constexpr int kTile = 16;
 constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, kLightPass = 3ULL << 40U, kCachePass = 4ULL << 40U;
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
 constexpr double kGenerationShare = 1.5;
-/// Ward's a falls from generation to generation by this power of their number, so that the cache's bias vanishes.
-constexpr double kErrorPower = 0.25;
+/// How much longer the next generation takes, about.
+constexpr double kGenerationGrowth = 1.5;
+/// Of a budget of time: a cache that is not full by then stays as it is, and what it lacks is traced.
+constexpr double kCacheShare = 0.7;
 /// The guide learns from each pass until it holds this many useful starts.
 constexpr std::size_t kTrainingLimit = 400'000;
+/// A pixel counts as at least this share of the image's mean where photons are weighed by need.
+constexpr double kLeastLuminance = 0.1;
 constexpr float kMaxCausticRadius = 0.05F;  ///< of the scene's radius
 constexpr double kDefaultError = 0.05;
 
@@ -92,11 +97,13 @@ public:
 private:
     void prepare();
     void iterate();
+    [[nodiscard]] bool generationDue() const;
     void renewGeneration();
     void causticPass();
     void lightPass();
     void eyePass();
     [[nodiscard]] bool finished() const;
+    [[nodiscard]] bool outOfTime() const { return request_.budget.seconds && elapsed() > kCacheShare * *request_.budget.seconds; }
     [[nodiscard]] double elapsed() const { return secondsSince(start_) + request_.budget.startedSecondsAgo; }
     [[nodiscard]] RenderRecord record() const;
     void tell(std::string_view stage) const;
@@ -105,7 +112,8 @@ private:
     [[nodiscard]] float kernelFootprints(int x, int y) const noexcept {
         return (kernelRadii_ ? kernelRadii_->at(x, y) : plan_.causticFootprints) * static_cast<float>(std::sqrt(radiusScale_));
     }
-    void learn(const std::vector<UsefulEmission>& useful);
+    void learn(std::vector<UsefulEmission> useful);
+    void weighByNeed(std::vector<UsefulEmission>& useful) const;
     void addRecordsLayer(Image& image) const;
     void save() const;
     void saveWhenDue(bool now);
@@ -130,7 +138,7 @@ private:
     std::unique_ptr<IrradianceCache> cache_;
     double radiusScale_ = 1.0;         ///< squared, of the caustic kernel
     std::uint32_t iteration_ = 0, generation_ = 0;
-    double raysOfGeneration_ = 0.0, raysSince_ = 0.0;
+    double raysOfGeneration_ = 0.0, raysSince_ = 0.0, secondsOfGeneration_ = 0.0;
     double lastSave_ = 0.0;
     StageRecord pilotStage_{"pilot"}, causticStage_{"caustic photons"}, globalStage_{"global photons"}, cacheStage_{"irradiance cache"},
         lightStage_{"light tracing"}, eyeStage_{"eye pass"};
@@ -149,8 +157,16 @@ void Renderer::prepare() {
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
 }
 
+bool Renderer::generationDue() const {
+    if (!plan_.cache || iteration_ == 0) return plan_.cache;
+    if (raysSince_ <= kGenerationShare * raysOfGeneration_) return false;
+    // Near the end of a budget of time a new one would not be used enough.
+    const double next = secondsOfGeneration_ * kGenerationGrowth;
+    return !request_.budget.seconds || elapsed() + (1.0 + kGenerationShare) * next <= *request_.budget.seconds;
+}
+
 void Renderer::iterate() {
-    if (plan_.cache && (iteration_ == 0 || raysSince_ > kGenerationShare * raysOfGeneration_)) renewGeneration();
+    if (generationDue()) renewGeneration();
     if (plan_.causticMap) causticPass();
     if (plan_.lightPass) lightPass();
     if (request_.method != Method::Light) eyePass();
@@ -160,11 +176,13 @@ void Renderer::iterate() {
 /// Fresh global photons and fresh records, with an error bound that tightens.
 void Renderer::renewGeneration() {
     const std::uint64_t raysBefore = globalStage_.rays + cacheStage_.rays;
+    const Clock::time_point began = Clock::now();
+    const GenerationSize size = plan_.generation(generation_);
     context_.maps.cache = nullptr;
     context_.maps.global = nullptr;
     if (plan_.globalMap) {
         const StageTimer timer(globalStage_);
-        const GlobalPass pass = traceGlobalPhotons(scene_, {request_.seed, kGlobalPass + generation_, plan_.globalPaths}, workers_);
+        const GlobalPass pass = traceGlobalPhotons(scene_, {request_.seed, kGlobalPass + generation_, size.globalPaths}, workers_);
         RadianceMapOptions options;
         options.maxRadius = 0.1F * scene_.radius();
         options.seed = hashCombine(request_.seed, kGlobalPass + generation_);
@@ -179,9 +197,8 @@ void Renderer::renewGeneration() {
     if (plan_.causticMap) context_.maps.caustic = &none;
     {
         const StageTimer timer(cacheStage_);
-        const auto error = static_cast<float>(static_cast<double>(plan_.cacheError) * std::pow(generation_ + 1.0, -kErrorPower));
-        CacheBuild build = buildCache(context_, survey_, camera_.width(), plan_, error, hashCombine(request_.seed, kCachePass + generation_),
-                                      workers_, [this] { return progress_.stopAsked(); });
+        CacheBuild build = buildCache(context_, survey_, camera_.width(), plan_, size, hashCombine(request_.seed, kCachePass + generation_),
+                                      workers_, [this] { return progress_.stopAsked() || outOfTime(); });
         cache_ = std::move(build.cache);
         cacheStage_.rays += build.rays;
         cacheStage_.records += cache_->records().size();
@@ -190,12 +207,36 @@ void Renderer::renewGeneration() {
     context_.maps.cache = cache_.get();
     raysOfGeneration_ = static_cast<double>(globalStage_.rays + cacheStage_.rays - raysBefore);
     raysSince_ = 0.0;
+    secondsOfGeneration_ = secondsSince(began);
     ++generation_;
 }
 
-void Renderer::learn(const std::vector<UsefulEmission>& useful) {
+/// A photon weighs as much as the image wants it: with E of the caustics, L of the pixel and a kernel of radius r the relative
+/// variance of a region is E / (n r^2 L^2) times the flux a photon; the least total asks for n ~ flux / (r L).
+void Renderer::weighByNeed(std::vector<UsefulEmission>& useful) const {
+    if (!kernelRadii_) return;
+    double sum = 0.0;
+    std::size_t seen = 0;
+    std::vector<float> need(useful.size(), -1.0F);
+    const double floor = kLeastLuminance * film_.meanLuminance();
+    for (std::size_t i = 0; i < useful.size(); ++i) {
+        const auto film = camera_.project(useful[i].landed, {0.5F, 0.5F});
+        if (!film) continue;
+        const int x = static_cast<int>(film->position.x), y = static_cast<int>(film->position.y);
+        if (x < 0 || y < 0 || x >= camera_.width() || y >= camera_.height()) continue;
+        const double pixel = film_.samples() > 0 ? film_.luminance(x, y) + floor : 1.0;
+        need[i] = static_cast<float>(1.0 / (static_cast<double>(kernelRadii_->at(x, y)) * std::max(pixel, 1e-12)));
+        sum += static_cast<double>(need[i]);
+        ++seen;
+    }
+    const auto mean = static_cast<float>(seen > 0 ? sum / static_cast<double>(seen) : 1.0);
+    for (std::size_t i = 0; i < useful.size(); ++i) useful[i].weight *= need[i] >= 0.0F ? need[i] : mean;
+}
+
+void Renderer::learn(std::vector<UsefulEmission> useful) {
     if (request_.settings.guiding == "off" || plan_.training.size() >= kTrainingLimit || !learningIteration()) return;
-    plan_.training = useful;
+    weighByNeed(useful);
+    plan_.training = std::move(useful);
     guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
 }
 
@@ -205,24 +246,24 @@ void Renderer::causticPass() {
     causticStage_.rays += pass.rays;
     causticStage_.photonsEmitted += pass.emitted;
     causticStage_.photonsStored += pass.photons.size();
-    learn(pass.useful);
     causticMap_ = std::make_unique<CausticMap>(std::move(pass.photons));
     context_.maps.caustic = causticMap_.get();
     // r^2_{i+1} = r^2_i (i + alpha) / (i + 1) [KnausZwicker2011]
     if (iteration_ > 0) radiusScale_ *= (iteration_ + static_cast<double>(plan_.alpha)) / (iteration_ + 1.0);
     if (kernelRadii_ && learningIteration()) kernelRadii_->learn(*causticMap_, survey_.points, workers_);
+    learn(std::move(pass.useful));
     context_.maps.causticRadiusMin = 4e-6F;
     context_.maps.causticRadiusMax = kMaxCausticRadius * scene_.radius();
 }
 
 void Renderer::lightPass() {
     const StageTimer timer(lightStage_);
-    const LightPass pass = traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_);
+    LightPass pass = traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_);
     lightStage_.rays += pass.rays;
     lightStage_.photonsEmitted += pass.emitted;
     lightStage_.photonsStored += pass.splats.size();
     film_.addSplats(pass.splats, iteration_);
-    learn(pass.useful);
+    learn(std::move(pass.useful));
 }
 
 void Renderer::eyePass() {
@@ -328,7 +369,13 @@ CheckpointKey Renderer::checkpointKey() const {
     return {key};
 }
 
-void Renderer::save() const { writeCheckpoint(request_.checkpoint, checkpointKey(), {iteration_, generation_, raysOfGeneration_, raysSince_, film_.save()}); }
+void Renderer::save() const {
+    CheckpointState state{iteration_, generation_, raysOfGeneration_, raysSince_, film_.save(), {}, {}};
+    state.training.resize(plan_.training.size() * sizeof(UsefulEmission));
+    if (!plan_.training.empty()) std::memcpy(state.training.data(), plan_.training.data(), state.training.size());
+    if (kernelRadii_) state.radii = kernelRadii_->save();
+    writeCheckpoint(request_.checkpoint, checkpointKey(), state);
+}
 
 void Renderer::saveWhenDue(bool now) {
     constexpr double kSecondsBetween = 10.0;
@@ -337,28 +384,23 @@ void Renderer::saveWhenDue(bool now) {
     lastSave_ = elapsed();
 }
 
-/// Repeats what the eye passes need but the file does not hold (the guide's lessons, the records of the running generation):
-/// all of it is keyed by seed and iteration, so the continued image has the bits of an uninterrupted one.
+/// The records of the running generation are made again: keyed by seed and generation, they are the same. So the continued
+/// image has the bits of an uninterrupted one.
 void Renderer::resume() {
     const auto state = readCheckpoint(request_.checkpoint, checkpointKey());
     if (!state) return;
-    if (!film_.restore(state->film))
+    if (!film_.restore(state->film) || state->training.size() % sizeof(UsefulEmission) != 0 ||
+        (kernelRadii_ && !kernelRadii_->restore(state->radii, workers_)))
         throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", request_.checkpoint.string(), "delete it or render without --resume");
+    plan_.training.resize(state->training.size() / sizeof(UsefulEmission));
+    if (!plan_.training.empty()) std::memcpy(plan_.training.data(), state->training.data(), state->training.size());
+    if (guide_) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
     if (plan_.cache && state->generation > 0) {
         generation_ = state->generation - 1;
         renewGeneration();
     }
-    for (iteration_ = 0; iteration_ < state->iteration; ++iteration_) {
+    for (iteration_ = 0; iteration_ < state->iteration; ++iteration_)
         if (plan_.causticMap && iteration_ > 0) radiusScale_ *= (iteration_ + static_cast<double>(plan_.alpha)) / (iteration_ + 1.0);
-        if (!learningIteration() || !guide_) continue;
-        if (plan_.causticMap) {
-            CausticPass pass = traceCausticPhotons(scene_, *guide_, {request_.seed, kCausticPass + iteration_, plan_.causticPaths}, &survey_.visible, workers_);
-            learn(pass.useful);
-            if (kernelRadii_) kernelRadii_->learn(CausticMap(std::move(pass.photons)), survey_.points, workers_);
-        }
-        if (plan_.lightPass)
-            learn(traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_).useful);
-    }
     raysOfGeneration_ = state->raysOfGeneration;
     raysSince_ = state->raysSince;
 }

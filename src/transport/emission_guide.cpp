@@ -29,47 +29,37 @@ constexpr float kSplitChiSquare = 21.6F;
 
 }  // namespace
 
-EmissionGuide::EmissionGuide(const Lights& lights, const std::vector<UsefulEmission>& useful) : lights_(lights) {
-    const std::size_t count = lights.count();
-    std::vector<double> useful1(count, 0.0);
-    std::vector<std::vector<UsefulEmission>> byLight(count);
-    double total = 0.0;
-    for (const UsefulEmission& e : useful) {
-        byLight[e.light].push_back(e);
-        useful1[e.light] += static_cast<double>(e.weight);
-        total += static_cast<double>(e.weight);
-    }
+EmissionGuide::EmissionGuide(const Lights& lights, std::vector<UsefulEmission> useful, double equalShare) : lights_(lights) {
+    const auto count = static_cast<std::uint32_t>(lights.count());
     const double power = lights.totalPower();
-    // One item of mean weight for each light, shared by power: among many small lights the evidence on each is thin.
-    if (total > 0.0) {
-        const double prior = total / static_cast<double>(useful.size()) * static_cast<double>(count);
-        for (std::uint32_t l = 0; l < count; ++l) useful1[l] += prior * (power > 0.0 ? lights.power(l) / power : 1.0 / static_cast<double>(count));
-        total += prior;
+    double trianglePower = 0.0;
+    std::size_t lamps = 0;
+    for (std::uint32_t l = 0; l < count; ++l) {
+        if (lights.kind(l) == LightKind::Triangle) trianglePower += lights.power(l);
+        else ++lamps;
     }
-    const double unguided = total > 0.0 ? static_cast<double>(kUniformShare) : 1.0;
+    if (trianglePower > 0.0) ++lamps;
     double sum = 0.0;
     for (std::uint32_t l = 0; l < count; ++l) {
-        sum += unguided * (power > 0.0 ? lights.power(l) / power : 1.0 / static_cast<double>(count));
-        if (total > 0.0) sum += (1.0 - unguided) * useful1[l] / total;
+        const double byPower = power > 0.0 ? lights.power(l) / power : 1.0 / count;
+        const double alike = lights.kind(l) != LightKind::Triangle ? 1.0 : trianglePower > 0.0 ? lights.power(l) / trianglePower : 0.0;
+        sum += (1.0 - equalShare) * byPower + equalShare * alike / static_cast<double>(std::max<std::size_t>(1, lamps));
         lightCdf_.push_back(sum);
     }
     for (double& c : lightCdf_) c /= sum;
-    trees_.resize(count);
-    if (total > 0.0) uniformShare_ = kUniformShare;
-    for (std::size_t l = 0; l < count; ++l) {
-        if (byLight[l].size() < kMinItems) continue;
-        trees_[l].nodes.emplace_back();
-        build(trees_[l], 0, byLight[l], 0, byLight[l].size(), {0, 0, 0, 0}, {1, 1, 1, 1}, 0);
-    }
+    if (useful.size() < kMinItems) return;
+    uniformShare_ = kUniformShare;
+    nodes_.emplace_back();
+    build(0, useful, 0, useful.size(), {0, 0, 0, 0, 0}, {1, 1, 1, 1, 1}, 0);
 }
 
-void EmissionGuide::build(Tree& tree, std::uint32_t node, std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end,
-                          std::array<float, 4> lower, std::array<float, 4> upper, int depth) {
+void EmissionGuide::build(std::uint32_t node, std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end,
+                          const EmissionNumbers5& lower, const EmissionNumbers5& upper, int depth) {
     const std::size_t count = end - begin;
     if (count < kMinItems || depth >= kMaxDepth) return;
     std::size_t axis = 0;
     float worst = 0.0F;
-    for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t a = 0; a < lower.size(); ++a) {
         const float chi = nonUniformity(items, begin, end, a, lower[a], upper[a]);
         if (chi > worst) worst = chi, axis = a;
     }
@@ -85,72 +75,64 @@ void EmissionGuide::build(Tree& tree, std::uint32_t node, std::vector<UsefulEmis
     }
     // One item of mean weight on each side: an empty half keeps a share that falls with the evidence.
     const double prior = mass / static_cast<double>(count);
-    tree.nodes[node].axis = static_cast<std::int32_t>(axis);
-    tree.nodes[node].left = static_cast<std::uint32_t>(tree.nodes.size());
-    tree.nodes[node].leftShare = static_cast<float>((leftMass + prior) / (mass + 2.0 * prior));
-    const std::uint32_t left = tree.nodes[node].left;
-    tree.nodes.emplace_back();
-    tree.nodes.emplace_back();
+    nodes_[node].axis = static_cast<std::int32_t>(axis);
+    nodes_[node].left = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[node].leftShare = static_cast<float>((leftMass + prior) / (mass + 2.0 * prior));
+    const std::uint32_t left = nodes_[node].left;
+    nodes_.emplace_back();
+    nodes_.emplace_back();
     auto middleUpper = upper, middleLower = lower;
     middleUpper[axis] = middleLower[axis] = middle;
-    build(tree, left, items, begin, cut, lower, middleUpper, depth + 1);
-    build(tree, left + 1, items, cut, end, middleLower, upper, depth + 1);
+    build(left, items, begin, cut, lower, middleUpper, depth + 1);
+    build(left + 1, items, cut, end, middleLower, upper, depth + 1);
 }
 
-float EmissionGuide::density(const Tree& tree, const std::array<float, 4>& u) noexcept {
-    if (tree.nodes.empty()) return 1.0F;
-    std::array<float, 4> local = u;
+float EmissionGuide::density(const EmissionNumbers5& u) const noexcept {
+    if (nodes_.empty()) return 1.0F;
+    EmissionNumbers5 local = u;
     float pdf = 1.0F;
-    const Node* node = tree.nodes.data();
+    const Node* node = nodes_.data();
     while (node->axis >= 0) {
         float& t = local[static_cast<std::size_t>(node->axis)];
         const bool left = t < 0.5F;
         pdf *= 2.0F * (left ? node->leftShare : 1.0F - node->leftShare);
         t = left ? 2.0F * t : 2.0F * t - 1.0F;
-        node = &tree.nodes[node->left + (left ? 0U : 1U)];
+        node = &nodes_[node->left + (left ? 0U : 1U)];
     }
     return pdf;
 }
 
 /// Maps uniform numbers to the tree's density by inversion at each split, which keeps their stratification.
-void EmissionGuide::warp(const Tree& tree, std::array<float, 4>& u) noexcept {
-    if (tree.nodes.empty()) return;
-    std::array<float, 4> lower{}, size{1.0F, 1.0F, 1.0F, 1.0F};
-    const Node* node = tree.nodes.data();
+void EmissionGuide::warp(EmissionNumbers5& u) const noexcept {
+    if (nodes_.empty()) return;
+    EmissionNumbers5 lower{}, size{1.0F, 1.0F, 1.0F, 1.0F, 1.0F};
+    const Node* node = nodes_.data();
     while (node->axis >= 0) {
         const auto axis = static_cast<std::size_t>(node->axis);
         const bool left = u[axis] < node->leftShare;
         u[axis] = left ? u[axis] / node->leftShare : (u[axis] - node->leftShare) / (1.0F - node->leftShare);
         size[axis] *= 0.5F;
         if (!left) lower[axis] += size[axis];
-        node = &tree.nodes[node->left + (left ? 0U : 1U)];
+        node = &nodes_[node->left + (left ? 0U : 1U)];
     }
-    for (std::size_t a = 0; a < 4; ++a) u[a] = std::min(lower[a] + u[a] * size[a], 0x1.fffffep-1F);
+    for (std::size_t a = 0; a < u.size(); ++a) u[a] = std::min(lower[a] + u[a] * size[a], 0x1.fffffep-1F);
 }
 
 std::optional<GuidedEmission> EmissionGuide::sample(Sampler& sampler) const noexcept {
-    const auto chosen = static_cast<double>(sampler.next1D());
+    const float chosen = sampler.next1D();
     const glm::vec2 position = sampler.next2D(), direction = sampler.next2D();
-    const bool guided = sampler.next1D() >= uniformShare_;
-    const auto it = std::upper_bound(lightCdf_.begin(), lightCdf_.end(), chosen);
+    EmissionNumbers5 u{chosen, position.x, position.y, direction.x, direction.y};
+    if (sampler.next1D() >= uniformShare_) warp(u);
+    const float pdf = uniformShare_ + (1.0F - uniformShare_) * density(u);
+    const auto it = std::upper_bound(lightCdf_.begin(), lightCdf_.end(), static_cast<double>(u[0]));
     const auto light = static_cast<std::uint32_t>(std::min<std::ptrdiff_t>(it - lightCdf_.begin(), static_cast<std::ptrdiff_t>(lightCdf_.size()) - 1));
     const double pmf = lightCdf_[light] - (light > 0 ? lightCdf_[light - 1] : 0.0);
-    std::array<float, 4> u{position.x, position.y, direction.x, direction.y};
-    const Tree& tree = trees_[light];
-    if (guided) warp(tree, u);
-    const float pdf = uniformShare_ + (1.0F - uniformShare_) * density(tree, u);
-    auto emission = lights_.sampleEmissionFrom(light, {u[0], u[1]}, {u[2], u[3]});
+    auto emission = lights_.sampleEmissionFrom(light, {u[1], u[2]}, {u[3], u[4]});
     if (!emission || !(pmf > 0.0)) return std::nullopt;
     const auto scale = static_cast<float>(1.0 / (pmf * static_cast<double>(pdf)));
     emission->flux *= scale;
     emission->pmfLight = static_cast<float>(pmf);
-    return GuidedEmission{*emission, {light, u, scale}};
-}
-
-std::size_t EmissionGuide::cells() const noexcept {
-    std::size_t sum = 0;
-    for (const Tree& t : trees_) sum += (t.nodes.size() + 1) / 2;
-    return sum;
+    return GuidedEmission{*emission, {u, scale, {}}};
 }
 
 }  // namespace pellucid

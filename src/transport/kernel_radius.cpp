@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 namespace pellucid {
 
 namespace {
 
 constexpr float kGrowth = 1.4F;
-/// Standard deviations by which disc and ring may differ (a few tests in a row: p about 0.01 each).
-constexpr double kContradiction = 2.5;
+/// Standard deviations by which disc and ring may differ (p about 0.07 a test: to see an edge matters more than to see one too many).
+constexpr double kContradiction = 1.8;
 
 [[nodiscard]] double equalPhotons(const FluxSums& s) noexcept { return s.squares > 0.0 ? s.sum * s.sum / s.squares : 0.0; }
 
@@ -40,29 +41,48 @@ float chooseKernelRadius(const CausticMap& map, const GatherPoint& point, const 
 
 KernelRadii::KernelRadii(int width, int height, const KernelRadiusOptions& options)
     : width_(width), height_(height), blocksX_((width + kBlock - 1) / kBlock), blocksY_((height + kBlock - 1) / kBlock), options_(options),
-      logSum_(static_cast<std::size_t>(blocksX_) * static_cast<std::size_t>(blocksY_), 0.0F), radii_(logSum_.size(), options.smallest) {}
+      logRadius_(static_cast<std::size_t>(blocksX_) * static_cast<std::size_t>(blocksY_), 0.0F), radii_(logRadius_.size(), options.smallest) {}
 
 void KernelRadii::learn(const CausticMap& map, const std::vector<GatherPoint>& points, const Workers& workers) {
     ++passes_;
-    const auto blockOf = [this](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(x); };
-    workers.forEach(logSum_.size(), 256, [&](std::size_t block) {
+    workers.forEach(logRadius_.size(), 256, [&](std::size_t block) {
         const int x0 = static_cast<int>(block) % blocksX_ * kBlock, y0 = static_cast<int>(block) / blocksX_ * kBlock;
         // Another pixel of the block each time.
         const int x = std::min(x0 + (passes_ & 1), width_ - 1), y = std::min(y0 + (passes_ >> 1 & 1), height_ - 1);
         const GatherPoint& p = points[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
         const float radius = p.valid && p.footprint > 0.0F ? chooseKernelRadius(map, p, options_) : options_.smallest;
-        logSum_[block] += std::log(radius);
+        logRadius_[block] = passes_ == 1 ? std::log(radius) : 0.5F * (logRadius_[block] + std::log(radius));
     });
-    // The median of nine neighbours takes out what single photons did.
+    smooth(workers);
+}
+
+/// The median of nine neighbours takes out what single photons did.
+void KernelRadii::smooth(const Workers& workers) {
+    const auto blockOf = [this](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(x); };
     workers.forEach(radii_.size(), 256, [&](std::size_t block) {
         const int bx = static_cast<int>(block) % blocksX_, by = static_cast<int>(block) / blocksX_;
         std::array<float, 9> near{};
         std::size_t n = 0;
         for (int y = std::max(0, by - 1); y <= std::min(blocksY_ - 1, by + 1); ++y)
-            for (int x = std::max(0, bx - 1); x <= std::min(blocksX_ - 1, bx + 1); ++x) near[n++] = logSum_[blockOf(x, y)];
+            for (int x = std::max(0, bx - 1); x <= std::min(blocksX_ - 1, bx + 1); ++x) near[n++] = logRadius_[blockOf(x, y)];
         std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(n / 2), near.begin() + static_cast<std::ptrdiff_t>(n));
-        radii_[block] = std::exp(near[n / 2] / static_cast<float>(passes_));
+        radii_[block] = std::exp(near[n / 2]);
     });
+}
+
+std::vector<char> KernelRadii::save() const {
+    std::vector<char> bytes(sizeof passes_ + logRadius_.size() * sizeof(float));
+    std::memcpy(bytes.data(), &passes_, sizeof passes_);
+    std::memcpy(bytes.data() + sizeof passes_, logRadius_.data(), logRadius_.size() * sizeof(float));
+    return bytes;
+}
+
+bool KernelRadii::restore(const std::vector<char>& bytes, const Workers& workers) {
+    if (bytes.size() != sizeof passes_ + logRadius_.size() * sizeof(float)) return false;
+    std::memcpy(&passes_, bytes.data(), sizeof passes_);
+    std::memcpy(logRadius_.data(), bytes.data() + sizeof passes_, logRadius_.size() * sizeof(float));
+    if (passes_ > 0) smooth(workers);
+    return true;
 }
 
 }  // namespace pellucid

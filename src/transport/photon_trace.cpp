@@ -28,6 +28,7 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
         LightPath path{start->emission.ray, start->emission.flux};
         const float emitted = luminance(path.flux);
         bool useful = false;
+        glm::vec3 landed(0.0F);
         Rgb arrived(0.0F);
         for (;;) {
             ++out.rays;
@@ -38,6 +39,7 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
                 if (usable(photon) && (visible == nullptr || visible->seen(photon.position))) {
                     out.photons.push_back(photon);
                     arrived += path.flux;
+                    if (!useful) landed = photon.position;
                     useful = true;
                 }
             }
@@ -45,8 +47,8 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
         }
         if (useful && emitted > 0.0F) {
             UsefulEmission origin = start->origin;
-
             origin.weight = luminance(arrived);
+            origin.landed = landed;
             out.useful.push_back(origin);
         }
     });
@@ -62,7 +64,7 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
 
 GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, const Workers& workers) {
     const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
-    const EmissionGuide unguided(scene.lights(), {});
+    const EmissionGuide unguided(scene.lights(), {}, 0.0);
     const auto chunks = inChunks<GlobalPass>(key.paths, workers, [&](std::uint32_t index, GlobalPass& out) {
         Sampler sampler(key.seed, key.pass, index);
         const auto start = unguided.sample(sampler);

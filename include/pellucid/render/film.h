@@ -34,6 +34,9 @@ public:
     [[nodiscard]] Image image(const std::vector<std::string>& layers) const;
     /// Root of the relmse of the mean, estimated from its two halves (noise only, not bias).
     [[nodiscard]] double relativeError() const noexcept;
+    /// Of the mean so far, all classes.
+    [[nodiscard]] double luminance(int x, int y) const noexcept;
+    [[nodiscard]] double meanLuminance() const noexcept;
     [[nodiscard]] NonFinite nonfinite() const noexcept;
 
     /// For checkpoints: the raw state.

@@ -22,21 +22,33 @@ struct Survey {
     std::uint64_t rays = 0;
 };
 
+/// What one generation of the cache is made with.
+struct GenerationSize {
+    std::uint32_t globalPaths = 0;
+    int gatherRays = 0;
+    float cacheError = 0.0F;
+};
+
 struct Plan {
     bool causticMap = false, globalMap = false, cache = false, lightPass = false;
     std::uint32_t causticPaths = 0;      ///< an iteration
-    std::uint32_t globalPaths = 0;       ///< a generation of the cache
+    std::uint32_t globalPaths = 0;       ///< for the first generation of the cache
     bool adaptiveRadius = true;          ///< of the caustic kernel, pixel by pixel
     float causticFootprints = 2.5F;      ///< kernel radius of the first iteration where it is not
     float alpha = 2.0F / 3.0F;
     float cacheError = 0.25F;
-    int gatherRays = 512;
+    int gatherRays = 128;                ///< a record, in the first generation
+    bool growPhotons = true, growRays = true;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;
     std::vector<std::string> blindSpots;
     double timeCap = 0.0;                ///< seconds, for a render that has only an error to reach; 0: none
     std::uint64_t pilotRays = 0, pilotPhotons = 0;
+
+    /// A quick first generation, then ever better ones: more photons and rays, a smaller error, so that the bias of map and
+    /// cache vanishes as time goes on. What was set by name stays, but for the error.
+    [[nodiscard]] GenerationSize generation(std::uint32_t number) const noexcept;
 };
 
 [[nodiscard]] Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, const Workers& workers);

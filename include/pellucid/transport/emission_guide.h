@@ -1,6 +1,7 @@
-/// Emission guiding: photons start where useful ones have started before. The five numbers that make an emission are drawn
-/// from a density learnt by binary trees over the primary sample space of each light, always mixed with the unguided
-/// density, so that nothing is missed; weights are exact. [Grittmann2018]
+/// Emission guiding: photons start where useful ones have started before. The five numbers that make an emission (which light,
+/// where on it, in which direction) are drawn from a density learnt by a binary tree over this primary sample space, always
+/// mixed with the unguided density, so that nothing is missed; weights are exact. Lights stand in their order, so that the
+/// triangles of a lamp are neighbours and share what is learnt. [Grittmann2018]
 #pragma once
 
 #include <array>
@@ -13,11 +14,14 @@
 
 namespace pellucid {
 
+/// Light, position (2), direction (2), each in [0,1).
+using EmissionNumbers5 = std::array<float, 5>;
+
 /// Where a useful photon began, and its weight: flux that it carried over the density it was drawn with.
 struct UsefulEmission {
-    std::uint32_t light = 0;
-    std::array<float, 4> u{};  ///< position, direction
+    EmissionNumbers5 u{};
     float weight = 0.0F;
+    glm::vec3 landed{0.0F};    ///< where it was first of use
 };
 
 struct GuidedEmission {
@@ -27,13 +31,16 @@ struct GuidedEmission {
 
 class EmissionGuide {
 public:
-    /// Without useful emissions the guide is the unguided density: lights by power, uniform numbers.
-    EmissionGuide(const Lights& lights, const std::vector<UsefulEmission>& useful);
+    /// Without useful emissions the guide is the unguided density: lights by power, uniform numbers. `equalShare` of the
+    /// choice of light goes to each lamp alike (all emissive triangles together count as one): a weak one is found too.
+    EmissionGuide(const Lights& lights, std::vector<UsefulEmission> useful, double equalShare = kEqualShare);
 
     /// Uses the sampler's next four dimensions.
     [[nodiscard]] std::optional<GuidedEmission> sample(Sampler& sampler) const noexcept;
 
-    [[nodiscard]] std::size_t cells() const noexcept;
+    [[nodiscard]] std::size_t cells() const noexcept { return (nodes_.size() + 1) / 2; }
+
+    static constexpr double kEqualShare = 0.1;
 
 private:
     struct Node {
@@ -41,17 +48,14 @@ private:
         std::uint32_t left = 0;      ///< right = left + 1
         float leftShare = 0.5F;
     };
-    struct Tree {
-        std::vector<Node> nodes;
-    };
-    [[nodiscard]] static float density(const Tree& tree, const std::array<float, 4>& u) noexcept;
-    static void warp(const Tree& tree, std::array<float, 4>& u) noexcept;
-    static void build(Tree& tree, std::uint32_t node, std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end,
-                      std::array<float, 4> lower, std::array<float, 4> upper, int depth);
+    [[nodiscard]] float density(const EmissionNumbers5& u) const noexcept;
+    void warp(EmissionNumbers5& u) const noexcept;
+    void build(std::uint32_t node, std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end,
+               const EmissionNumbers5& lower, const EmissionNumbers5& upper, int depth);
 
     const Lights& lights_;
-    std::vector<double> lightCdf_;         ///< guided choice of light, with its unguided share mixed in
-    std::vector<Tree> trees_;              ///< by light; no nodes: uniform
+    std::vector<double> lightCdf_;   ///< of the unguided choice of light
+    std::vector<Node> nodes_;        ///< none: uniform
     float uniformShare_ = 1.0F;
 };
 

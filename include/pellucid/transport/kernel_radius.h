@@ -14,13 +14,13 @@ namespace pellucid {
 
 struct KernelRadiusOptions {
     float smallest = 0.7F, largest = 12.0F;  ///< in pixel footprints
-    double enough = 150.0;                   ///< photons (of equal power) that a kernel needs to hold
+    double enough = 60.0;                    ///< photons (of equal power) that a kernel needs to hold
 };
 
 /// The radius at `point`, in footprints.
 [[nodiscard]] float chooseKernelRadius(const CausticMap& map, const GatherPoint& point, const KernelRadiusOptions& options) noexcept;
 
-/// Radii of all pixels: running means, in the logarithm, over the passes that they were chosen from.
+/// Radii of all pixels: means, in the logarithm, over the passes that they were chosen from.
 class KernelRadii {
 public:
     KernelRadii(int width, int height, const KernelRadiusOptions& options);
@@ -32,12 +32,17 @@ public:
         return radii_[static_cast<std::size_t>(y / kBlock) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(x / kBlock)];
     }
 
+    /// For checkpoints. restore: false when the bytes do not fit.
+    [[nodiscard]] std::vector<char> save() const;
+    [[nodiscard]] bool restore(const std::vector<char>& bytes, const Workers& workers);
+
 private:
+    void smooth(const Workers& workers);
     static constexpr int kBlock = 2;     ///< pixels that share a radius, a side
     int width_, height_, blocksX_, blocksY_, passes_ = 0;
     KernelRadiusOptions options_;
-    std::vector<float> logSum_;          ///< by block; over passes
-    std::vector<float> radii_;           ///< by block; the mean, smoothed
+    std::vector<float> logRadius_;       ///< by block: the newest pass counts half, as the guide gets better
+    std::vector<float> radii_;           ///< by block; smoothed
 };
 
 }  // namespace pellucid
