@@ -21,6 +21,7 @@ struct Placement {
     glm::mat4 toScene{1.0F};
     glm::mat3 normalToScene{1.0F};
     bool mirrored = false;  ///< negative determinant: the winding turns over
+    bool baked = false;     ///< the mesh's own vertices stand in the scene already
 };
 
 [[nodiscard]] Normalisation normalise(const SceneDescription& description) {
@@ -62,6 +63,16 @@ struct Placement {
     const double size = std::max({glm::length(cofactor[0]), glm::length(cofactor[1]), glm::length(cofactor[2]), 1e-300});
     p.normalToScene = glm::mat3(cofactor * ((determinant < 0.0 ? -1.0 : 1.0) / size));
     return p;
+}
+
+/// A mesh that stands in one place only is moved there once and for all.
+void bake(Placement& placement, Mesh& mesh) {
+    for (glm::vec3& p : mesh.positions) p = glm::vec3(placement.toScene * glm::vec4(p, 1.0F));
+    for (glm::vec3& n : mesh.normals) n = placement.normalToScene * n;
+    for (glm::vec4& t : mesh.tangents) t = glm::vec4(glm::mat3(placement.toScene) * glm::vec3(t), t.w);
+    placement.toScene = glm::mat4(1.0F);
+    placement.normalToScene = glm::mat3(1.0F);
+    placement.baked = true;
 }
 
 /// A camera that frames the whole scene from the front, a little from the right and above.
@@ -113,6 +124,7 @@ struct Scene::Impl {
 std::array<glm::vec3, 3> Scene::Impl::corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
     const Mesh& mesh = description.meshes[description.geometries[geometry].mesh];
     const glm::uvec3 t = mesh.triangles[primitive];
+    if (placements[geometry].baked) return {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
     const glm::mat4& m = placements[geometry].toScene;
     return {glm::vec3(m * glm::vec4(mesh.positions[t.x], 1.0F)), glm::vec3(m * glm::vec4(mesh.positions[t.y], 1.0F)),
             glm::vec3(m * glm::vec4(mesh.positions[t.z], 1.0F))};
@@ -134,18 +146,19 @@ SurfacePoint Scene::Impl::surfacePoint(const RawHit& hit) const noexcept {
     p.position = glm::vec3(glm::dvec3(a) * w + glm::dvec3(b) * u + glm::dvec3(c) * v);
     const glm::dvec3 cross = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
     const double length = glm::length(cross);
-    p.geometricNormal = length > 0.0 ? glm::vec3(cross / length) : glm::vec3(0.0F, 0.0F, 1.0F);
+    p.geometricNormal = length > 0.0 ? glm::vec3(cross * (1.0 / length)) : glm::vec3(0.0F, 0.0F, 1.0F);
     if (placement.mirrored) p.geometricNormal = -p.geometricNormal;
     p.shadingNormal = p.geometricNormal;
     if (!mesh.normals.empty()) {
-        const glm::vec3 n = placement.normalToScene * (mesh.normals[t.x] * wf + mesh.normals[t.y] * uf + mesh.normals[t.z] * vf);
+        glm::vec3 n = mesh.normals[t.x] * wf + mesh.normals[t.y] * uf + mesh.normals[t.z] * vf;
+        if (!placement.baked) n = placement.normalToScene * n;
         const float size = glm::length(n);
-        if (size > 1e-12F && std::isfinite(size)) p.shadingNormal = n / size;
+        if (size > 1e-12F && std::isfinite(size)) p.shadingNormal = n * (1.0F / size);
         const float side = glm::dot(p.shadingNormal, p.geometricNormal);
         if (side <= 0.0F) p.shadingNormal = p.geometricNormal;  // turned or grazing: not a normal of this face
     }
     p.tangent = glm::vec3(0.0F);
-    if (!mesh.tangents.empty()) {
+    if (!mesh.tangents.empty() && description.materials[mesh.material].normalTexture) {
         const glm::vec4 tangent = mesh.tangents[t.x] * wf + mesh.tangents[t.y] * uf + mesh.tangents[t.z] * vf;
         const glm::vec3 world = glm::mat3(placement.toScene) * glm::vec3(tangent);
         const float size = glm::length(world);
@@ -294,8 +307,11 @@ Scene::Scene(SceneDescription description, std::optional<EnvironmentDescription>
     s.scaleMaterials();
     std::vector<glm::mat4> toScene;
     std::vector<std::uint32_t> meshOf;
+    std::vector<int> uses(s.description.meshes.size(), 0);
+    for (const Geometry& g : s.description.geometries) ++uses[g.mesh];
     for (const Geometry& g : s.description.geometries) {
         s.placements.push_back(place(s.normalisation, g));
+        if (uses[g.mesh] == 1) bake(s.placements.back(), s.description.meshes[g.mesh]);
         toScene.push_back(s.placements.back().toScene);
         meshOf.push_back(g.mesh);
         s.triangleCount += s.description.meshes[g.mesh].triangles.size();
@@ -369,6 +385,7 @@ float Scene::visibility(const Ray& ray) const noexcept {
     return transmittance;
 }
 
+bool Scene::hasHoles() const noexcept { return impl_->anyAlpha; }
 const SurfaceModel& Scene::surfaces() const noexcept { return *impl_->surfaces; }
 const Lights& Scene::lights() const noexcept { return *impl_->lights; }
 const Environment* Scene::environment() const noexcept { return impl_->environment.get(); }

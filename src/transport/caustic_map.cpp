@@ -67,8 +67,9 @@ struct KernelSum : WithinRadius {
 
 struct CausticMap::Impl {
     PhotonList photons;
-    PointTree<Photon> tree;
-    explicit Impl(PhotonList list) : photons(std::move(list)), tree(photons) {}
+    std::vector<PointSite> sites;  ///< what the tree's search touches: positions only
+    PointTree<PointSite> tree;
+    explicit Impl(PhotonList list) : photons(std::move(list)), sites(photons.begin(), photons.end()), tree(sites) {}
 };
 
 CausticMap::CausticMap(PhotonList photons) {

@@ -38,7 +38,7 @@ struct Arrival {
 /// The next vertex of a light path, with absorption applied. Empty: it escaped or grazes.
 [[nodiscard]] inline std::optional<Arrival> arrive(const Scene& scene, LightPath& path, Sampler& sampler) noexcept {
     sampler.setDimension(kEmissionDimensions + kDimensionsPerVertex * static_cast<std::uint64_t>(path.vertices));
-    const auto hit = scene.intersect(path.ray, sampler.next1D());
+    const auto hit = scene.intersect(path.ray, scene.hasHoles() ? sampler.next1D() : 0.0F);
     if (!hit) return std::nullopt;
     ++path.vertices;
     const glm::vec3 wi = -path.ray.direction;

@@ -46,6 +46,13 @@ void sortAlongMortonCurve(std::vector<Item>& items) {
     items = std::move(sorted);
 }
 
+/// A position alone.
+struct PointSite {
+    glm::vec3 position{0.0F};
+    template <class Item>
+    explicit PointSite(const Item& item) : position(item.position) {}
+};
+
 /// A kd-tree over items with a `position`. The items must stay where they are.
 template <class Item>
 class PointTree {

@@ -143,15 +143,19 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     const glm::vec3& position = vertex.hit.point.position;
     const auto light = context_.scene.lights().sample(position, vertex.lightNormal, choice, u);
     if (!light || !(light->pdfSolidAngle > 0.0F)) return;
-    const float pdfSampled = light->delta ? 0.0F : vertex.bsdf.pdf(vertex.wo, light->wi, sampled);
-    const float shared = misWeight(light->pdfSolidAngle, pdfSampled);
     LayeredRadiance sum;
-    for (const LobeKinds kind : {kSpecular, kGlossy, kDiffuse}) {
-        if ((kinds & kind) == kNoLobe) continue;
-        const Rgb f = vertex.bsdf.eval(vertex.wo, light->wi, kind, TransportMode::Radiance);
-        if (isBlack(f)) continue;
-        const float weight = (sampled & kind) != kNoLobe ? shared : 1.0F;
-        sum[state.ledger.atLightAfter(kind == kSpecular)] += f * weight;
+    if (kinds == sampled && (kinds & (kinds - 1)) == 0) {
+        // One kind of lobe, which is sampled too: value and density in one go.
+        const BsdfValue v = vertex.bsdf.evaluate(vertex.wo, light->wi, kinds, TransportMode::Radiance);
+        sum[state.ledger.atLightAfter(kinds == kSpecular)] = v.value * misWeight(light->pdfSolidAngle, light->delta ? 0.0F : v.pdfSolidAngle);
+    } else {
+        const float pdfSampled = light->delta ? 0.0F : vertex.bsdf.pdf(vertex.wo, light->wi, sampled);
+        const float shared = misWeight(light->pdfSolidAngle, pdfSampled);
+        for (const LobeKinds kind : {kSpecular, kGlossy, kDiffuse}) {
+            if ((kinds & kind) == kNoLobe) continue;
+            const Rgb f = vertex.bsdf.eval(vertex.wo, light->wi, kind, TransportMode::Radiance);
+            if (!isBlack(f)) sum[state.ledger.atLightAfter(kind == kSpecular)] += f * ((sampled & kind) != kNoLobe ? shared : 1.0F);
+        }
     }
     const Rgb total = sum.total();
     if (isBlack(total)) return;
@@ -172,7 +176,6 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
 bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
     const float chooseLobe = sampler.next1D();
     const glm::vec2 u = sampler.next2D();
-    const float chooseKind = sampler.next1D();
     const auto sample = vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance);
     if (!sample) return false;
     LobeKinds kind = sample->kind;
@@ -188,7 +191,7 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
             total += average(f[i]);
         }
         if (!(total > 0.0F)) return false;
-        float left = chooseKind * total;
+        float left = sampler.next1D() * total;
         int chosen = 0;
         while (chosen < 2 && (left >= average(f[chosen]) || average(f[chosen]) == 0.0F)) left -= average(f[chosen++]);
         while (chosen > 0 && average(f[chosen]) == 0.0F) --chosen;
@@ -234,7 +237,7 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     const std::uint64_t dimension = kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
     sampler.setDimension(dimension + kCoin);
     ++rays_;
-    const auto hit = context_.scene.intersect(state.ray.ray, sampler.next1D());
+    const auto hit = context_.scene.intersect(state.ray.ray, holes_ ? sampler.next1D() : 0.0F);
     if (firstDistance != nullptr && state.vertices == 0)
         *firstDistance = hit ? hit->distance : std::numeric_limits<float>::infinity();
     if (!hit) {
@@ -312,7 +315,7 @@ GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexce
         const std::uint64_t dimension = kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
         sampler.setDimension(dimension + kCoin);
         ++rays_;
-        const auto hit = context_.scene.intersect(state.ray.ray, sampler.next1D());
+        const auto hit = context_.scene.intersect(state.ray.ray, holes_ ? sampler.next1D() : 0.0F);
         if (!hit || ++state.vertices > kCertainVertices) return {};
         state.pathLength += hit->distance;
         const glm::vec3 wo = -state.ray.ray.direction;

@@ -50,6 +50,8 @@ public:
     /// Nearest surface along the ray; alpha (mask, blend) is resolved by `coin` keyed uniform numbers in [0,1): a covered
     /// surface is passed with probability 1 - coverage. Counts no rays: callers count.
     [[nodiscard]] std::optional<SurfaceHit> intersect(const Ray& ray, float coin) const noexcept;
+    /// Whether some surface has holes, so that intersect() looks at its coin.
+    [[nodiscard]] bool hasHoles() const noexcept;
 
     /// Transmittance by alpha between the ray's origin and tMax: 0 blocked by anything opaque (glass blocks too).
     [[nodiscard]] float visibility(const Ray& ray) const noexcept;

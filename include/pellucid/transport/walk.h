@@ -67,7 +67,7 @@ struct WalkRay {
 
 class Walk {
 public:
-    explicit Walk(const TransportContext& context) noexcept : context_(context) {}
+    explicit Walk(const TransportContext& context) noexcept : context_(context), holes_(context.scene.hasHoles()) {}
 
     /// Radiance along a camera ray, by class. `dimension`s of the sampler from 2 on are used, 8 a vertex.
     [[nodiscard]] LayeredRadiance fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first = nullptr) noexcept;
@@ -95,6 +95,7 @@ private:
     [[nodiscard]] float misWeight(float mine, float other) const noexcept;
 
     const TransportContext& context_;
+    bool holes_;
     std::uint64_t rays_ = 0, cacheMisses_ = 0;
 };
 
