@@ -4,6 +4,8 @@
 #include <fstream>
 #include <limits>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include <pellucid/math/constants.h>
@@ -441,7 +443,7 @@ class GltfFiles : public testing::Test {
 protected:
     GltfFiles() {
         const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder = std::filesystem::temp_directory_path() / (std::string("pellucid_gltf_") + info->name());
+        folder = std::filesystem::temp_directory_path() / ("pellucid_gltf_" + std::to_string(getpid()) + "_" + info->name());
         std::filesystem::remove_all(folder);
         std::filesystem::create_directories(folder / "sub");
     }
