@@ -2,6 +2,8 @@
 # The slow label is built, so that it cannot rot, but ctest knows it only under PELLUCID_SLOW_TESTS.
 find_package(GTest REQUIRED)
 include(GoogleTest)
+set(PELLUCID_SHARED_SCENES "${PROJECT_SOURCE_DIR}/../shared/scenes" CACHE PATH
+    "Scenes with references that some tests use where they are there")
 
 foreach(label unit statistical analytic golden slow)
     file(GLOB sources CONFIGURE_DEPENDS tests/${label}/*_test.cpp)
@@ -14,7 +16,7 @@ foreach(label unit statistical analytic golden slow)
     target_link_libraries(${program} PRIVATE pellucid GTest::gtest_main fmt::fmt nlohmann_json::nlohmann_json)
     target_compile_definitions(${program} PRIVATE
         PELLUCID_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-        PELLUCID_SHARED_SCENES="${PROJECT_SOURCE_DIR}/../shared/scenes"
+        PELLUCID_SHARED_SCENES="${PELLUCID_SHARED_SCENES}"
         PELLUCID_BINARY="${PROJECT_BINARY_DIR}/pellucid")
     pellucid_configure(${program})
     # Link time is not optimised here: the objects' own machine code gives the same bits and links in a second.

@@ -11,6 +11,7 @@
 
 #include <pellucid/base/error.h>
 #include <pellucid/base/nearest_name.h>
+#include <pellucid/render/settings_page.h>
 
 #include "argument_values.h"
 
@@ -66,7 +67,7 @@ void addPictureOptions(CLI::App& app, SceneArguments& common, TypedText& typed) 
     app.add_option("--seed", common.seed, "another seed makes other noise (default: 0)")
         ->check(CLI::NonNegativeNumber)
         ->type_name("N");
-    addRepeatable(app, "--set", typed.set, "a parameter by name; repeatable, after --config")->type_name("KEY=VALUE");
+    addRepeatable(app, "--set", typed.set, "a parameter by name (see `pellucid options`); repeatable, after --config")->type_name("KEY=VALUE");
     app.add_option("--config", typed.config, "parameters from a TOML file")->type_name("FILE.toml");
 }
 
@@ -108,7 +109,7 @@ struct Parser {
     DiffArguments diff;
     CheckArguments check;
     CompareArguments compare;
-    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand, *compareCommand, *checkCommand;
+    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand, *compareCommand, *checkCommand, *optionsCommand;
 
     Parser() {
         app.require_subcommand(1);
@@ -122,6 +123,7 @@ struct Parser {
         diffCommand = addDiff();
         checkCommand = addCheck();
         compareCommand = addCompare();
+        optionsCommand = app.add_subcommand("options", "every setting that --set and --config take");
     }
 
     CLI::App* addRender() {
@@ -278,6 +280,7 @@ struct Parser {
         }
         if (infoCommand->parsed()) return info;
         if (checkCommand->parsed()) return check;
+        if (optionsCommand->parsed()) return TextArguments{settingsMarkdown()};
         if (compareCommand->parsed()) return resultOfCompare();
         if (!typed.crop.empty()) diff.crop = parseCrop(typed.crop);
         for (const std::string& text : typed.failAbove) diff.failAbove.push_back(parseGate(text));

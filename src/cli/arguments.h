@@ -75,7 +75,7 @@ struct CheckArguments {
     std::uint64_t seed = 0;
 };
 
-/// --help and --version: text for standard output, and done.
+/// --help, --version and options: text for standard output, and done.
 struct TextArguments {
     std::string text;
 };

@@ -24,23 +24,18 @@ struct MeshKey {
     int mesh = 0;
     std::size_t primitive = 0;
     int node = -1;  ///< of the one node that deforms the mesh; -1: none does
-    bool mirrored = false;
     auto operator<=>(const MeshKey&) const = default;
 };
 
-enum class Volume { Kept, Mirrored, Lost };
-
-/// What a transform does to volumes, independent of its scale: the determinant over the product of the axes' lengths.
-[[nodiscard]] Volume volumeUnder(const glm::dmat4& m) noexcept {
+/// Whether a transform leaves no volume, independent of its scale: by the determinant over the product of the axes' lengths.
+[[nodiscard]] bool flattens(const glm::dmat4& m) noexcept {
     glm::dmat3 axes(m);
     for (glm::length_t i = 0; i < 3; ++i) {
         const double length = glm::length(axes[i]);
-        if (!(length > 1e-30)) return Volume::Lost;
+        if (!(length > 1e-30)) return true;
         axes[i] /= length;
     }
-    const double determinant = glm::determinant(axes);
-    if (std::fabs(determinant) < 1e-9) return Volume::Lost;
-    return determinant < 0.0 ? Volume::Mirrored : Volume::Kept;
+    return std::fabs(glm::determinant(axes)) < 1e-9;
 }
 
 class MeshPlacer {
@@ -56,7 +51,7 @@ public:
         for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
             const bool skinned = node.skin >= 0 && hasInfluences(mesh.primitives[p]);
             const bool own = skinned || (!node.weights.empty() && !mesh.primitives[p].targets.empty());
-            const MeshKey key{node.mesh, p, own ? index : -1, false};
+            const MeshKey key{node.mesh, p, own ? index : -1};
             if (skinned)
                 placeAt(key, glm::dmat4(1.0), index);  // a skin alone says where its mesh stands
             else
@@ -73,17 +68,15 @@ private:
         return places;
     }
 
-    void placeAt(MeshKey key, const glm::dmat4& toWorld, int node) {
+    void placeAt(const MeshKey& key, const glm::dmat4& toWorld, int node) {
         if (!isFinite(toWorld))
             asset_.bad(element("nodes", static_cast<std::size_t>(node)), "a transform is not finite", "scale it down");
-        const Volume volume = volumeUnder(toWorld);
-        key.mirrored = volume == Volume::Mirrored;
         const std::optional<std::uint32_t> mesh = meshOf(key);
         if (!mesh) return;
         if (description_.geometries.size() >= kMaxGeometries)
             asset_.bad(element("nodes", static_cast<std::size_t>(node)), "more than 2^24 placements of meshes",
                        "merge some of them");
-        if (volume == Volume::Lost)
+        if (flattens(toWorld))
             description_.geometries.push_back({bake(*mesh, toWorld), glm::dmat4(1.0)});
         else
             description_.geometries.push_back({*mesh, toWorld});
@@ -92,15 +85,7 @@ private:
     [[nodiscard]] std::optional<std::uint32_t> meshOf(const MeshKey& key) {
         if (const auto known = meshes_.find(key); known != meshes_.end()) return known->second;
         std::optional<std::uint32_t>& number = meshes_[key];
-        if (key.mirrored) {
-            MeshKey plain = key;
-            plain.mirrored = false;
-            if (const auto other = meshOf(plain)) {
-                Mesh copy = description_.meshes[*other];
-                turnRound(copy);
-                number = add(std::move(copy));
-            }
-        } else if (auto mesh = buildMesh(asset_, {key.mesh, key.primitive}, deformationOf(key),
+        if (auto mesh = buildMesh(asset_, {key.mesh, key.primitive}, deformationOf(key),
                                          description_.droppedTriangles)) {
             number = add(std::move(*mesh));
         }

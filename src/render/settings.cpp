@@ -27,7 +27,7 @@ constexpr auto kParameters = std::to_array<Parameter>({
     {"photon.caustic", &Settings::causticPhotons, 0, kBillion, true, true, "", "paths",
      "photon paths an iteration for the caustic map"},
     {"photon.global", &Settings::globalPhotons, 0, kBillion, true, true, "", "paths",
-     "photon paths an iteration for the global map"},
+     "photon paths a generation of the cache, for the global map"},
     {"photon.radius", &Settings::causticRadius, 0.01, 1000, true, true, "", "pixels",
      "first radius of the caustic kernel, in pixel footprints. Larger: smoother and more biased"},
     {"photon.alpha", &Settings::alpha, 0.01, 1, false, false, "", "",

@@ -114,6 +114,35 @@ glm::vec3 normalFor(const Material& m, const SurfacePoint& point, const glm::vec
     return glm::dot(shading, wo) > 0.0F ? shading : side * point.geometricNormal;
 }
 
+/// True when a mirror's direction, and that of glass of this ior (0: no refraction), leave on the side that the true
+/// surface says. `g`: the geometric normal on wo's side.
+bool keepsSides(const glm::vec3& n, const glm::vec3& g, const glm::vec3& wo, float eta) noexcept {
+    const float cosine = glm::dot(n, wo);
+    if (glm::dot(2.0F * cosine * n - wo, g) <= 0.0F) return false;
+    const double sin2 = std::max(0.0, 1.0 - static_cast<double>(cosine) * static_cast<double>(cosine));
+    if (!(eta > 0.0F) || sin2 >= static_cast<double>(eta) * static_cast<double>(eta)) return true;  // total reflection
+    return glm::dot((cosine / eta - refractedCosine(sin2, eta)) * n - wo / eta, g) < 0.0F;
+}
+
+/// An interpolated normal may lean so far that a mirror or glass would send light to the wrong side, where it is lost:
+/// black rims. Such a normal is bent towards the geometric one, to a sixteenth no farther than it must.
+glm::vec3 bentNormal(const glm::vec3& n, const glm::vec3& g, const glm::vec3& wo, float eta) noexcept {
+    if (keepsSides(n, g, wo, eta)) return n;
+    float wrong = 0.0F, right = 1.0F;
+    glm::vec3 best = g;
+    for (int i = 0; i < 4; ++i) {
+        const float middle = 0.5F * (wrong + right);
+        const glm::vec3 between = glm::normalize(glm::mix(n, g, middle));
+        if (keepsSides(between, g, wo, eta)) {
+            best = between;
+            right = middle;
+        } else {
+            wrong = middle;
+        }
+    }
+    return best;
+}
+
 Lobe dielectric(const Material& m, const Resolved& r, float weight, bool backSide, const LobeRules& rules) noexcept {
     const float alpha = alphaOf(r.roughness, rules);
     const bool smooth = alpha == 0.0F || turnsLittle(m, alpha);
@@ -182,8 +211,13 @@ Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo) const no
     const float metal = r.metallic, glass = (1.0F - metal) * r.transmission,
                 opaque = (1.0F - metal) * (1.0F - r.transmission);
     const bool backSide = glm::dot(wo, point.geometricNormal) < 0.0F;
-    Bsdf result(Frame(normalFor(m, point, wo, backSide)), backSide ? -point.geometricNormal : point.geometricNormal,
-                backSide, isVolume(m) && glass > 0.0F);
+    const glm::vec3 geometric = backSide ? -point.geometricNormal : point.geometricNormal;
+    glm::vec3 normal = normalFor(m, point, wo, backSide);
+    if (metal > 0.0F || glass > 0.0F) {
+        const bool refracts = glass > 0.0F && isVolume(m) && m.ior > 0.0F;
+        normal = bentNormal(normal, geometric, wo, !refracts ? 0.0F : backSide ? 1.0F / m.ior : m.ior);
+    }
+    Bsdf result(Frame(normal), geometric, backSide, isVolume(m) && glass > 0.0F);
     if (opaque > 0.0F) {
         const CoatTerms coat = prepared.textured ? coatTerms(m, r, rules_, *tables_, prepared.table) : prepared.coat;
         result.add({DiffuseLobe{r.baseColor * coat.k, coat.a, coat.b}, opaque, 0.0F, kDiffuse, false}, wo);

@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <regex>
 #include <string>
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -14,6 +16,8 @@
 #include <pellucid/io/image_file.h>
 #include <pellucid/io/plain_file.h>
 #include <pellucid/study/metrics.h>
+
+#include "gltf_builder.h"
 
 namespace pellucid {
 namespace {
@@ -30,7 +34,7 @@ protected:
     void SetUp() override {
         if (!fs::exists(PELLUCID_BINARY)) GTEST_SKIP() << "the command is not built";
         const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(testing::TempDir()) / (std::string("pellucid_cli_") + info->name());
+        folder_ = fs::path(testing::TempDir()) / ("pellucid_cli_" + std::to_string(getpid()) + "_" + info->name());
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }
@@ -115,12 +119,55 @@ TEST_F(Cli, MissingFiles) {
     expectError("plan x.glb --config '" + path("none.toml") + "'", 2, "none.toml");
 }
 
+/// Each broken in one way: one line that names the place, exit status 2, no output.
+TEST_F(Cli, BrokenScenes) {
+    const auto text = [](const std::vector<std::byte>& bytes) {
+        std::string result;
+        for (const std::byte b : bytes) result += static_cast<char>(b);
+        return result;
+    };
+    const auto expectRefused = [&](const std::vector<std::byte>& glb, const std::string& words) {
+        std::ofstream(path("broken.glb"), std::ios::binary) << text(glb);
+        expectError("render '" + path("broken.glb") + "' -o '" + path("out.exr") + "' --env 1,1,1", 2, words);
+        EXPECT_FALSE(fs::exists(path("out.exr")));
+    };
+    const test::GltfBuilder whole = test::triangle();
+    std::vector<std::byte> truncated = whole.glb();
+    truncated.resize(truncated.size() - 5);
+    expectRefused(truncated, "truncated");
+
+    test::GltfBuilder b = whole;
+    b.json["accessors"][0]["count"] = 4;
+    expectRefused(b.glb(), "accessors[0]): export");
+    b = whole;
+    test::primitive(b)["attributes"]["NORMAL"] = 9;
+    expectRefused(b.glb(), "index 9 is past the end");
+    b = whole;
+    test::primitive(b)["indices"] = b.data(std::vector<std::uint16_t>{0, 1, 7}, test::kUnsignedShort, "SCALAR");
+    expectRefused(b.glb(), "index 7 is past the end of 3 vertices");
+    b = test::GltfBuilder{};
+    const int positions = b.floats({0, 0, 0, 1, 0, 0, 0, std::numeric_limits<float>::quiet_NaN(), 0}, "VEC3");
+    b.node({{"mesh", b.mesh({{"attributes", {{"POSITION", positions}}}})}});
+    expectRefused(b.glb(), "not finite");
+    b = whole;
+    b.json["images"] = test::Json::array({{{"bufferView", b.view(std::vector<std::uint8_t>(64, 7))}, {"mimeType", "image/png"}}});
+    b.json["textures"] = test::Json::array({{{"source", 0}}});
+    b.json["materials"] = test::Json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+    test::primitive(b)["material"] = 0;
+    expectRefused(b.glb(), "images[0]");
+    std::ofstream(path("map.exr")) << "no image";
+    std::ofstream(path("whole.glb"), std::ios::binary) << text(whole.glb());
+    expectError("render '" + path("whole.glb") + "' -o '" + path("out.exr") + "' --env '" + path("map.exr") + "'", 2, "map.exr");
+    expectError("render '" + path("whole.glb") + "' -o '" + path("out.exr") + "'", 2, "no light");
+}
+
 TEST_F(Cli, OutputsAreCheckedBeforeTheSceneIsRead) {
     // The scene is missing too: whichever is looked at first makes the error.
     const std::string scene = "render '" + path("none.glb") + "' ";
     expectError(scene + "-o '" + path("no/such/out.exr") + "'", 3, "out.exr");
     expectError(scene + "-o '" + path("a.exr") + "' --record '" + path("no/r.json") + "'", 3, "r.json");
     expectError(scene + "-o '" + path("a.exr") + "' --checkpoint '" + path("no/c") + "'", 3, "no/c");
+    expectError(scene + "-o /proc/out.exr", 3, "/proc/out.exr");  // a folder that nobody may write, root included
     fs::create_directory(path("folder.exr"));
     expectError(scene + "-o '" + path("folder.exr") + "'", 3, "folder.exr");
     EXPECT_FALSE(fs::exists(path("a.exr")));

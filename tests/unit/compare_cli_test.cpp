@@ -10,6 +10,8 @@
 
 #include <sys/wait.h>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -112,7 +114,7 @@ class CompareCli : public testing::Test {
 protected:
     void SetUp() override {
         folder_ = fs::path(testing::TempDir()) /
-                  (std::string("pellucid_compare_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+                  ("pellucid_compare_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }

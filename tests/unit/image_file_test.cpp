@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include <pellucid/base/error.h>
@@ -19,7 +21,7 @@ class ImageFile : public testing::Test {
 protected:
     ImageFile() {
         const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder = fs::temp_directory_path() / (std::string("pellucid_image_") + info->name());
+        folder = fs::temp_directory_path() / ("pellucid_image_" + std::to_string(getpid()) + "_" + info->name());
         fs::remove_all(folder);
         fs::create_directories(folder);
     }

@@ -4,6 +4,8 @@
 #include <set>
 #include <string>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include <pellucid/base/error.h>
@@ -28,7 +30,7 @@ Error errorOf(const std::string& name, const std::string& value) {
 class SettingsFile : public testing::Test {
 protected:
     std::string write(const std::string& text) {
-        file_ = std::filesystem::path(testing::TempDir()) / "pellucid_settings_test.toml";
+        file_ = std::filesystem::path(testing::TempDir()) / ("pellucid_settings_" + std::to_string(getpid()) + ".toml");
         std::ofstream(file_) << text;
         return file_.string();
     }

@@ -24,7 +24,7 @@ struct Mesh {
 /// One placement of a mesh. `toWorld` is affine and invertible.
 struct Geometry {
     std::uint32_t mesh = 0;
-    glm::dmat4 toWorld{1.0};
+    glm::dmat4 toWorld{1.0};  ///< negative determinant: the front goes along with the mirrored normals, Scene sees to it
 };
 
 }  // namespace pellucid

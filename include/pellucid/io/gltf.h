@@ -2,8 +2,8 @@
 /// sizes, indices, paths and numbers are checked before use; files that it names must lie in its own folder.
 ///
 /// What the description says beyond the file's own words:
-///   - a mesh primitive under several nodes is one Mesh with several Geometry; mirrored nodes (negative determinant)
-///     get a copy with the winding turned round, so that the front stays the front that glTF means;
+///   - a mesh primitive under several nodes is one Mesh with several Geometry, those of mirrored nodes (negative
+///     determinant) among them: Scene turns their fronts and bitangents;
 ///   - skinned meshes, meshes with morph weights of their node and nodes of no volume (a scale of 0) are baked: their
 ///     Geometry has the identity as transform where the node's own has no inverse or does not count;
 ///   - vertices that no triangle uses are left out;
