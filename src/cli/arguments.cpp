@@ -25,7 +25,7 @@ const std::map<std::string, Method> kMethods{
 
 /// Option texts as typed, until all are known: a --config is read before the first --set, wherever they stand.
 struct TypedText {
-    std::string size, config, layers, crop, method = "photon", methods, times;
+    std::string size, config, layers, crop, sample, method = "photon", methods, times;
     std::vector<std::string> set, failAbove;
 };
 
@@ -128,7 +128,6 @@ struct Parser {
         CLI::App* command = app.add_subcommand("render", "render a scene into image files");
         addSceneOptions(*command, render.common, typed);
         addRepeatable(*command, "-o,--output", render.outputs, "image to write; repeatable")
-            ->required()
             ->type_name("OUT.exr|.png|.hdr|.pfm");
         command->add_option("--exposure", render.exposure, "stops of exposure, for PNG only")->type_name("EV");
         command
@@ -140,6 +139,11 @@ struct Parser {
         CLI::Option* checkpoint =
             command->add_option("--checkpoint", render.checkpoint, "state to go on from")->type_name("FILE");
         command->add_flag("--resume", render.resume, "go on from the checkpoint")->needs(checkpoint);
+        command
+            ->add_option("--debug-sample", typed.sample,
+                         "instead of rendering, take sample S (from 0) of pixel X,Y again and print its path, vertex by "
+                         "vertex")
+            ->type_name("X,Y,S");
         command->footer(
             "Examples:\n  pellucid render scene.glb -o out.exr -o out.png --time 30\n"
             "  pellucid render scene.glb -o ref.exr --method reference --spp 4096 --checkpoint ref.state\n"
@@ -267,6 +271,9 @@ struct Parser {
 
     [[nodiscard]] Arguments result() {
         if (renderCommand->parsed()) {
+            if (!typed.sample.empty()) render.debugSample = parseSample(typed.sample);
+            if (render.outputs.empty() && !render.debugSample)
+                throw Error(ErrorKind::Usage, "no image to write is named", "command line", "give -o OUT.exr");
             for (const std::string& file : render.outputs) requireExtension("-o", file, kImageExtensions);
             if (!typed.layers.empty()) render.layers = parseLayers(typed.layers);
             resolve(render.common, typed);

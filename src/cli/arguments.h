@@ -29,6 +29,12 @@ struct SceneArguments {
     bool quiet = false;
 };
 
+/// One sample of a render.
+struct SampleName {
+    int x = 0, y = 0;
+    std::uint32_t sample = 0;
+};
+
 struct RenderArguments {
     SceneArguments common;
     std::vector<std::string> outputs;
@@ -36,6 +42,7 @@ struct RenderArguments {
     std::vector<std::string> layers;
     std::string record, checkpoint;
     bool resume = false;
+    std::optional<SampleName> debugSample;  ///< replay this one instead of rendering
 };
 
 struct PlanArguments {
