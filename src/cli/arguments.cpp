@@ -18,7 +18,7 @@ namespace pellucid {
 namespace {
 
 constexpr std::array<std::string_view, 4> kImageExtensions{".exr", ".png", ".hdr", ".pfm"};
-constexpr std::array<std::string_view, 1> kMapExtensions{".png"};
+constexpr std::array<std::string_view, 1> kMapExtensions{".png"}, kPlotExtensions{".svg"};
 
 const std::map<std::string, Method> kMethods{
     {"photon", Method::Photon}, {"path", Method::Path}, {"light", Method::Light}, {"reference", Method::Reference}};
@@ -241,7 +241,12 @@ struct Parser {
         command->add_option("--filter", check.filter, "only cases with this in their name")->type_name("NAME");
         CLI::Option* json = command->add_flag("--json", check.json, "for programs");
         command->add_flag("--markdown", check.markdown, "the page docs/validation.md")->excludes(json);
-        command->add_flag("--quick", check.quick, "leave out the slow cases");
+        CLI::Option* quick = command->add_flag("--quick", check.quick, "leave out the slow cases");
+        command
+            ->add_flag("--sweeps", check.sweeps,
+                       "instead of the cases, the sweeps of stiffness: error and time over decades of a dial")
+            ->excludes(quick);
+        command->add_option("--plot", check.plot, "draw the sweeps of --sweeps or --markdown")->type_name("OUT.svg");
         command->add_option("--threads", check.threads, "worker threads; 0: all. No figure depends on it")
             ->check(CLI::Range(0, 1024))
             ->type_name("N");
@@ -249,7 +254,8 @@ struct Parser {
             ->check(CLI::NonNegativeNumber)
             ->type_name("N");
         command->add_flag("--quiet", check.quiet, "print nothing but the report and errors");
-        command->footer("Examples:\n  pellucid check --quick\n  pellucid check --filter closed-form --json");
+        command->footer("Examples:\n  pellucid check --quick\n  pellucid check --filter closed-form --json\n"
+                        "  pellucid check --sweeps --filter 'lamp size' --plot sweeps.svg");
         return command;
     }
 
@@ -284,7 +290,12 @@ struct Parser {
             return plan;
         }
         if (infoCommand->parsed()) return info;
-        if (checkCommand->parsed()) return check;
+        if (checkCommand->parsed()) {
+            if (!check.plot.empty()) requireExtension("--plot", check.plot, kPlotExtensions);
+            if (!check.plot.empty() && !check.sweeps && !check.markdown)
+                throw Error(ErrorKind::Usage, "only sweeps are drawn", "--plot", "add --sweeps or --markdown");
+            return check;
+        }
         if (compareCommand->parsed()) return resultOfCompare();
         if (!typed.crop.empty()) diff.crop = parseCrop(typed.crop);
         for (const std::string& text : typed.failAbove) diff.failAbove.push_back(parseGate(text));

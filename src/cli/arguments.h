@@ -78,6 +78,8 @@ struct CompareArguments {
 struct CheckArguments {
     std::string filter;
     bool json = false, markdown = false, quick = false, quiet = false;
+    bool sweeps = false;  ///< the sweeps of stiffness instead of the cases
+    std::string plot;     ///< SVG of the sweeps; empty: none
     int threads = 0;
     std::uint64_t seed = 0;
 };

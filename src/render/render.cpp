@@ -15,6 +15,7 @@
 
 #include "cache_builder.h"
 #include "checkpoint.h"
+#include "endless.h"
 
 namespace pellucid {
 
@@ -194,6 +195,7 @@ void Renderer::prepare() {
         pilotStage_.rays += survey_.rays;
     }
     plan_ = makePlan(scene_, camera_, request_, survey_, workers_);
+    if (auto remark = endlessRemark(scene_, camera_)) plan_.blindSpots.push_back(*remark);
     pilotStage_.rays += plan_.pilotRays;
     pilotStage_.photonsEmitted += plan_.pilotPhotons;
     if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), KernelRadiusOptions{});
