@@ -20,7 +20,7 @@ namespace {
 [[nodiscard]] std::vector<Sweep> sweep(const CheckArguments& arguments, const Workers& workers, const LogSink& log) {
     if (!arguments.plot.empty()) checkFolderWritable(arguments.plot);
     std::vector<Sweep> sweeps = runSweeps({workers, arguments.seed}, arguments.sweeps ? arguments.filter : "", [&](const Sweep& s) {
-        logTo(log, LogLevel::Info, "sweep of the " + s.name + " done");
+        logTo(log, LogLevel::Info, "sweep, " + s.name + " " + figure(s.steps.back().value) + " done");
     });
     if (sweeps.empty())
         throw Error(ErrorKind::Usage, "no sweep has '" + arguments.filter + "' in its name", "--filter",

@@ -253,8 +253,10 @@ std::vector<Sweep> runSweeps(const CheckContext& context, std::string_view filte
     for (const Dial& dial : dials()) {
         if (std::string_view(dial.name).find(filter) == std::string_view::npos) continue;
         Sweep sweep{dial.name, dial.dial, dial.scene, dial.reference, dial.source, {}};
-        for (const double value : dial.values) sweep.steps.push_back(measureStep(context, value, dial.make(value)));
-        if (done) done(sweep);
+        for (const double value : dial.values) {
+            sweep.steps.push_back(measureStep(context, value, dial.make(value)));
+            if (done) done(sweep);
+        }
         sweeps.push_back(std::move(sweep));
     }
     return sweeps;

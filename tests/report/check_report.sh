@@ -1,11 +1,22 @@
 #!/usr/bin/env bash
 # Opens a report.html in headless Chromium, works its controls and holds what it sees: curves drawn, slider moves, the
 # pixel under the pointer is that of the EXR, no console error, no network request.
-# usage: check_report.sh FOLDER-OF-A-COMPARISON   (needs chromium and oiiotool)
+# usage: check_report.sh FOLDER-OF-A-COMPARISON
+#        check_report.sh --make PELLUCID SCENE   makes a small comparison first
+# Where chromium, oiiotool or python3 is missing it says so and exits with 77, which ctest shows as skipped.
 set -euo pipefail
-folder=$(cd "$1" && pwd)
+for tool in chromium oiiotool python3; do
+    command -v "$tool" >/dev/null || { echo "skipped: $tool is missing"; exit 77; }
+done
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+if [ "$1" = --make ]; then
+    folder=$work/comparison
+    "$2" compare "$3" -o "$folder" --methods path,photon:cache.error=0.3,light --times 0.2,0.4 --seeds 3 --size 40x30 \
+        --reference-time 2 --quiet
+else
+    folder=$(cd "$1" && pwd)
+fi
 
 # The page with a script behind it that acts as a user and writes what it found.
 cp "$folder/report.html" "$work/page.html"

@@ -46,7 +46,7 @@ inline constexpr double kBrokenError = 0.1, kBrokenFactor = 3.0;
 /// The first step, counted from the sweep's tame end (its first), from which on the method is broken down; empty: none.
 [[nodiscard]] std::optional<std::size_t> breakdown(const Sweep& sweep, std::size_t method) noexcept;
 
-/// All sweeps whose name holds `filter`. `done` is called after each.
+/// All sweeps whose name holds `filter`. `done` is called after each step, with those so far.
 [[nodiscard]] std::vector<Sweep> runSweeps(const CheckContext& context, std::string_view filter,
                                            const std::function<void(const Sweep&)>& done = {});
 
