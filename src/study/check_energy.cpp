@@ -63,7 +63,7 @@ std::vector<Finding> balance(const CheckContext& context) {
         all.push_back(measureSeeds(context, quantity, expected, 0.0, resolution,
                                    [&](std::uint64_t seed) { return value(passes(context, scene, seed)); }));
     };
-    seeds("watts emitted, global pass", kPower, 0.01, [&](const Passes& p) { return p.global.emitted * watts; });
+    seeds("watts emitted, global pass", kPower, 0.05, [&](const Passes& p) { return p.global.emitted * watts; });
     seeds("watts emitted, caustic pass (guided)", kPower, 0.05, [&](const Passes& p) { return p.caustic.emitted * watts; });
     seeds("roulette's share, global pass", 0.0, 0.01, [](const Passes& p) { return p.global.roulette / p.global.emitted; });
     seeds("roulette's share, caustic pass", 0.0, 0.01, [](const Passes& p) { return p.caustic.roulette / p.caustic.emitted; });

@@ -19,7 +19,7 @@ namespace {
 
 using namespace check;
 
-constexpr int kSize = 16, kSweepSeeds = 4;
+constexpr int kSize = 12, kSweepSeeds = 4;
 constexpr double kRho = 0.5;
 const glm::dvec3 kUp(0, 0, 1);
 
@@ -28,7 +28,7 @@ struct Known {
     SceneDescription scene;
     std::function<double(const glm::dvec3&)> radiance;
     Settings settings = smallSettings();
-    std::uint32_t pathSamples = 64, photonSamples = 8;
+    std::uint32_t pathSamples = 32, photonSamples = 8;
 };
 
 /// The picture as it must be.
@@ -112,16 +112,17 @@ struct Known {
     b.box(glm::dvec3(-1.0), glm::dvec3(1.0), lambert(rho, 1.0F), true);
     b.perspective({0.1, -0.2, 0.3}, {0.9, 0.5, -0.4}, 1.6);
     Known known{b.description(), [=](const glm::dvec3&) { return 1.0 / (1.0 - static_cast<double>(rho)); }};
-    known.settings.globalPhotons = absorbed < 0.005 ? 1000 : 5000;
-    known.settings.gatherRays = absorbed < 0.005 ? 16 : 64;
-    known.pathSamples = absorbed < 0.005 ? 8 : 64;
+    // As many vertices at every step, or nearly so: a path has 1 / (1 - rho) of them.
+    known.settings.globalPhotons = absorbed < 0.05 ? 1000 : 5000;
+    known.settings.gatherRays = absorbed < 0.05 ? 16 : 64;
+    known.pathSamples = absorbed < 0.005 ? 2 : absorbed < 0.05 ? 8 : 32;
     known.photonSamples = 2;
     return known;
 }
 
-/// A sun of 1 sr would be no stiffness: a small lamp faces a metal mirror as in lampSize, and the metal is roughened. The
-/// light that a rough mirror throws on the floor has no closed form; it is integrated over the mirror with the same
-/// microfacet model [Walter2007], in double and apart from the renderer.
+/// A small lamp faces a metal mirror as in lampSize, and the metal is roughened. The light that a rough mirror throws on the
+/// floor has no closed form; it is integrated over the mirror with the same microfacet model [Walter2007], in double and
+/// apart from the renderer.
 struct RoughMirror {
     double alpha, half = 0.05, radiance = 1.0 / (4.0 * 0.05 * 0.05);
     /// f cos at the mirror x = 1 (normal -x) from direction wi to wo, GGX with Smith's uncorrelated masking, F = 1.
@@ -167,7 +168,7 @@ struct RoughMirror {
     return known;
 }
 
-/// The power that a roughened mirror throws on the floor: integral over the mirror's plane and the lamp's middle.
+/// The mirror of lampSize, roughened: glTF squares the roughness to alpha.
 [[nodiscard]] Known roughness(double value) {
     const RoughMirror m{value * value};
     SceneBuilder b;
@@ -184,7 +185,7 @@ struct RoughMirror {
             return kRho / kPiD * m.radiance * polygonIrradiance(p, kUp, image);
         }
         // Around the mirror image's place, where the integrand is: the narrower, the smoother the metal.
-        constexpr int kSteps = 48, kLamp = 4;
+        constexpr int kSteps = 32, kLamp = 3;
         double sum = 0.0;
         for (int i = 0; i < kLamp * kLamp; ++i) {
             const glm::dvec3 light(0.2, m.half * ((i % kLamp + 0.5) * 2.0 / kLamp - 1.0), 0.6 + m.half * ((i / kLamp + 0.5) * 2.0 / kLamp - 1.0));
@@ -206,7 +207,7 @@ struct RoughMirror {
         }
         return kRho / kPiD * sum * 4.0 * m.half * m.half / (kLamp * kLamp);
     };
-    known.pathSamples = 256;
+    known.pathSamples = 128;
     return known;
 }
 
