@@ -43,3 +43,10 @@ if(EXISTS ${PROJECT_SOURCE_DIR}/tests/consumer/CMakeLists.txt AND NOT PELLUCID_S
                      -P ${PROJECT_SOURCE_DIR}/tests/consumer/run.cmake)
     set_tests_properties(consumer PROPERTIES LABELS package TIMEOUT 600)
 endif()
+
+# The report of a small comparison in headless Chromium; skipped where that is missing.
+if(TARGET pellucid_cli)
+    add_test(NAME report COMMAND bash ${PROJECT_SOURCE_DIR}/tests/report/check_report.sh --make $<TARGET_FILE:pellucid_cli>
+                                 ${PROJECT_SOURCE_DIR}/scenes/ring.glb)
+    set_tests_properties(report PROPERTIES LABELS report TIMEOUT 600 SKIP_RETURN_CODE 77)
+endif()

@@ -66,6 +66,14 @@ CropBox parseCrop(const std::string& text) {
     return {sides[0], sides[1], sides[2], sides[3]};
 }
 
+SampleName parseSample(const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    const auto x = parse<int>(parts[0]), y = parts.size() == 3 ? parse<int>(parts[1]) : std::nullopt;
+    const auto sample = parts.size() == 3 ? parse<std::uint32_t>(parts[2]) : std::nullopt;
+    if (!x || !y || !sample) refuse("--debug-sample", text, "give X,Y,S, such as --debug-sample 120,33,4");
+    return {*x, *y, *sample};
+}
+
 std::pair<std::string, std::string> parseAssignment(const std::string& option, const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0) refuse(option, text, "write it as KEY=VALUE, without blanks");

@@ -10,10 +10,14 @@
 
 #include <pellucid/study/metrics.h>
 
+#include "arguments.h"
+
 namespace pellucid {
 
 [[nodiscard]] std::pair<int, int> parseSize(const std::string& text);
 [[nodiscard]] CropBox parseCrop(const std::string& text);
+/// x,y,s of --debug-sample.
+[[nodiscard]] SampleName parseSample(const std::string& text);
 /// Splits at the first '='.
 [[nodiscard]] std::pair<std::string, std::string> parseAssignment(const std::string& option, const std::string& text);
 /// METRIC=VALUE of --fail-above.

@@ -19,14 +19,14 @@ namespace pellucid {
 namespace {
 
 constexpr std::array<std::string_view, 4> kImageExtensions{".exr", ".png", ".hdr", ".pfm"};
-constexpr std::array<std::string_view, 1> kMapExtensions{".png"};
+constexpr std::array<std::string_view, 1> kMapExtensions{".png"}, kPlotExtensions{".svg"};
 
 const std::map<std::string, Method> kMethods{
     {"photon", Method::Photon}, {"path", Method::Path}, {"light", Method::Light}, {"reference", Method::Reference}};
 
 /// Option texts as typed, until all are known: a --config is read before the first --set, wherever they stand.
 struct TypedText {
-    std::string size, config, layers, crop, method = "photon", methods, times;
+    std::string size, config, layers, crop, sample, method = "photon", methods, times;
     std::vector<std::string> set, failAbove;
 };
 
@@ -130,7 +130,6 @@ struct Parser {
         CLI::App* command = app.add_subcommand("render", "render a scene into image files");
         addSceneOptions(*command, render.common, typed);
         addRepeatable(*command, "-o,--output", render.outputs, "image to write; repeatable")
-            ->required()
             ->type_name("OUT.exr|.png|.hdr|.pfm");
         command->add_option("--exposure", render.exposure, "stops of exposure, for PNG only")->type_name("EV");
         command
@@ -142,6 +141,11 @@ struct Parser {
         CLI::Option* checkpoint =
             command->add_option("--checkpoint", render.checkpoint, "state to go on from")->type_name("FILE");
         command->add_flag("--resume", render.resume, "go on from the checkpoint")->needs(checkpoint);
+        command
+            ->add_option("--debug-sample", typed.sample,
+                         "instead of rendering, take sample S (from 0) of pixel X,Y again and print its path, vertex by "
+                         "vertex")
+            ->type_name("X,Y,S");
         command->footer(
             "Examples:\n  pellucid render scene.glb -o out.exr -o out.png --time 30\n"
             "  pellucid render scene.glb -o ref.exr --method reference --spp 4096 --checkpoint ref.state\n"
@@ -239,7 +243,12 @@ struct Parser {
         command->add_option("--filter", check.filter, "only cases with this in their name")->type_name("NAME");
         CLI::Option* json = command->add_flag("--json", check.json, "for programs");
         command->add_flag("--markdown", check.markdown, "the page docs/validation.md")->excludes(json);
-        command->add_flag("--quick", check.quick, "leave out the slow cases");
+        CLI::Option* quick = command->add_flag("--quick", check.quick, "leave out the slow cases");
+        command
+            ->add_flag("--sweeps", check.sweeps,
+                       "instead of the cases, the sweeps of stiffness: error and time over decades of a dial")
+            ->excludes(quick);
+        command->add_option("--plot", check.plot, "draw the sweeps of --sweeps or --markdown")->type_name("OUT.svg");
         command->add_option("--threads", check.threads, "worker threads; 0: all. No figure depends on it")
             ->check(CLI::Range(0, 1024))
             ->type_name("N");
@@ -247,7 +256,8 @@ struct Parser {
             ->check(CLI::NonNegativeNumber)
             ->type_name("N");
         command->add_flag("--quiet", check.quiet, "print nothing but the report and errors");
-        command->footer("Examples:\n  pellucid check --quick\n  pellucid check --filter closed-form --json");
+        command->footer("Examples:\n  pellucid check --quick\n  pellucid check --filter closed-form --json\n"
+                        "  pellucid check --sweeps --filter 'lamp size' --plot sweeps.svg");
         return command;
     }
 
@@ -269,6 +279,9 @@ struct Parser {
 
     [[nodiscard]] Arguments result() {
         if (renderCommand->parsed()) {
+            if (!typed.sample.empty()) render.debugSample = parseSample(typed.sample);
+            if (render.outputs.empty() && !render.debugSample)
+                throw Error(ErrorKind::Usage, "no image to write is named", "command line", "give -o OUT.exr");
             for (const std::string& file : render.outputs) requireExtension("-o", file, kImageExtensions);
             if (!typed.layers.empty()) render.layers = parseLayers(typed.layers);
             resolve(render.common, typed);
@@ -279,7 +292,12 @@ struct Parser {
             return plan;
         }
         if (infoCommand->parsed()) return info;
-        if (checkCommand->parsed()) return check;
+        if (checkCommand->parsed()) {
+            if (!check.plot.empty()) requireExtension("--plot", check.plot, kPlotExtensions);
+            if (!check.plot.empty() && !check.sweeps && !check.markdown)
+                throw Error(ErrorKind::Usage, "only sweeps are drawn", "--plot", "add --sweeps or --markdown");
+            return check;
+        }
         if (optionsCommand->parsed()) return TextArguments{settingsMarkdown()};
         if (compareCommand->parsed()) return resultOfCompare();
         if (!typed.crop.empty()) diff.crop = parseCrop(typed.crop);

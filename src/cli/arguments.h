@@ -29,6 +29,12 @@ struct SceneArguments {
     bool quiet = false;
 };
 
+/// One sample of a render.
+struct SampleName {
+    int x = 0, y = 0;
+    std::uint32_t sample = 0;
+};
+
 struct RenderArguments {
     SceneArguments common;
     std::vector<std::string> outputs;
@@ -36,6 +42,7 @@ struct RenderArguments {
     std::vector<std::string> layers;
     std::string record, checkpoint;
     bool resume = false;
+    std::optional<SampleName> debugSample;  ///< replay this one instead of rendering
 };
 
 struct PlanArguments {
@@ -71,6 +78,8 @@ struct CompareArguments {
 struct CheckArguments {
     std::string filter;
     bool json = false, markdown = false, quick = false, quiet = false;
+    bool sweeps = false;  ///< the sweeps of stiffness instead of the cases
+    std::string plot;     ///< SVG of the sweeps; empty: none
     int threads = 0;
     std::uint64_t seed = 0;
 };

@@ -1,8 +1,12 @@
 // `pellucid check`: run the cases one by one, tell each as it ends, then print the report. Any failure exits with 4.
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include <pellucid/base/error.h>
+#include <pellucid/io/plain_file.h>
 #include <pellucid/study/check.h>
+#include <pellucid/study/stiffness.h>
 #include <pellucid/study/text_table.h>
 
 #include "commands.h"
@@ -10,7 +14,32 @@
 
 namespace pellucid {
 
+namespace {
+
+/// Sweeps, drawn where that is asked for.
+[[nodiscard]] std::vector<Sweep> sweep(const CheckArguments& arguments, const Workers& workers, const LogSink& log) {
+    if (!arguments.plot.empty()) checkFolderWritable(arguments.plot);
+    std::vector<Sweep> sweeps = runSweeps({workers, arguments.seed}, arguments.sweeps ? arguments.filter : "", [&](const Sweep& s) {
+        logTo(log, LogLevel::Info, "sweep, " + s.name + " " + figure(s.steps.back().value) + " done");
+    });
+    if (sweeps.empty())
+        throw Error(ErrorKind::Usage, "no sweep has '" + arguments.filter + "' in its name", "--filter",
+                    "run --sweeps without --filter to see all names");
+    if (!arguments.plot.empty()) writeFile(arguments.plot, sweepsSvg(sweeps));
+    return sweeps;
+}
+
+}  // namespace
+
 int runCheck(const CheckArguments& arguments) {
+    if (arguments.sweeps) {
+        const Workers workers(arguments.threads);
+        const std::vector<Sweep> sweeps = sweep(arguments, workers, terminalLog(arguments.quiet));
+        printResult(arguments.markdown ? sweepsMarkdown(sweeps, std::filesystem::path(arguments.plot).filename().string())
+                    : arguments.json   ? sweepsJson(sweeps)
+                                       : sweepsTable(sweeps));
+        return 0;
+    }
     const auto chosen = selectChecks(arguments.filter, arguments.quick);
     if (chosen.empty())
         throw Error(ErrorKind::Usage, "no check has '" + arguments.filter + "' in its name", "--filter",
@@ -25,7 +54,10 @@ int runCheck(const CheckArguments& arguments) {
               std::to_string(report.results.size()) + "/" + std::to_string(chosen.size()) + " " + check->name +
                   (result.passed() ? " ok, " : " FAILED, ") + duration(result.seconds));
     }
-    if (arguments.markdown)
+    if (arguments.markdown && arguments.filter.empty() && !arguments.quick)
+        printResult(checkMarkdown(report) +
+                    sweepsMarkdown(sweep(arguments, workers, log), std::filesystem::path(arguments.plot).filename().string()));
+    else if (arguments.markdown)
         printResult(checkMarkdown(report));
     else
         printResult(arguments.json ? checkJson(report) : checkTable(report));

@@ -11,6 +11,8 @@ using Clock = std::chrono::steady_clock;
 
 /// `started`: when the program began; a budget of time counts from there.
 [[nodiscard]] int runRender(const RenderArguments& arguments, Clock::time_point started);
+/// render --debug-sample.
+[[nodiscard]] int runReplay(const RenderArguments& arguments);
 [[nodiscard]] int runPlan(const PlanArguments& arguments);
 [[nodiscard]] int runInfo(const InfoArguments& arguments);
 [[nodiscard]] int runDiff(const DiffArguments& arguments);

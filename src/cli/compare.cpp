@@ -63,6 +63,7 @@ private:
     request.settings = arguments.common.settings;
     request.version = PELLUCID_VERSION;
     request.sceneFile = arguments.common.scene;
+    request.environment = arguments.common.environment;
     request.command = arguments.command;
     return request;
 }

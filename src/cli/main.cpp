@@ -5,9 +5,11 @@
 #include <variant>
 
 #include <pellucid/base/error.h>
+#include <pellucid/base/parallel.h>
 
 #include "arguments.h"
 #include "commands.h"
+#include "process.h"
 #include "terminal.h"
 
 namespace {
@@ -38,6 +40,8 @@ int fail(const Error& error) {
 int main(int count, char** values) {
     const auto started = Clock::now();
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write, with its own message
+    exitOnInterrupts();             // until a command has something to save
+    flushDenormalsOnThisThread();   // what runs outside of Workers computes as what runs inside
     try {
         return std::visit(Run{started}, parseArguments(count, values));
     } catch (const Error& error) {

@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace pellucid {
 namespace {
@@ -12,18 +13,28 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not take a lock");
 
-extern "C" void onInterrupt(int) { interrupted.store(true, std::memory_order_relaxed); }
+constexpr int kInterruptedStatus = 130;
 
-}  // namespace
+extern "C" void leave(int) { _exit(kInterruptedStatus); }
 
-void catchInterrupts() {
+extern "C" void onInterrupt(int) {
+    if (interrupted.exchange(true, std::memory_order_relaxed)) leave(0);  // the second time: at once
+}
+
+void handleInterrupts(void (*handler)(int)) {
     struct sigaction action {};
-    action.sa_handler = onInterrupt;
-    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;  // the default action is back after the first signal
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
 }
+
+}  // namespace
+
+void exitOnInterrupts() { handleInterrupts(leave); }
+
+void catchInterrupts() { handleInterrupts(onInterrupt); }
 
 bool interruptAsked() noexcept { return interrupted.load(std::memory_order_relaxed); }
 

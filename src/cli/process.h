@@ -5,7 +5,11 @@
 
 namespace pellucid {
 
-/// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program as usual.
+/// From now on SIGINT and SIGTERM end the program at once with status 130. Nothing half done is left under a final name:
+/// files are written aside and renamed.
+void exitOnInterrupts();
+
+/// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program at once.
 void catchInterrupts();
 [[nodiscard]] bool interruptAsked() noexcept;
 

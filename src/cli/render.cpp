@@ -79,7 +79,9 @@ void tellResult(const RenderResult& result, const RecordContext& context, const 
         logTo(log, LogLevel::Warning,
               std::to_string(bad.count) + " samples were not finite and count as black; the first: pixel " +
                   std::to_string(bad.x) + "," + std::to_string(bad.y) + ", sample " + std::to_string(bad.sample) +
-                  ", seed " + std::to_string(context.seed));
+                  ", seed " + std::to_string(context.seed) +
+                  "; --debug-sample " + std::to_string(bad.x) + "," + std::to_string(bad.y) + "," +
+                  std::to_string(bad.sample) + " takes it again");
     logTo(log, LogLevel::Info,
           std::string(result.interrupted ? "interrupted; " : "") + std::to_string(context.width) + "x" +
               std::to_string(context.height) + ", " + std::to_string(record.samplesPerPixel) + " samples a pixel, " +
@@ -105,6 +107,7 @@ void tellResult(const RenderResult& result, const RecordContext& context, const 
 }  // namespace
 
 int runRender(const RenderArguments& arguments, Clock::time_point started) {
+    if (arguments.debugSample) return runReplay(arguments);
     const LogSink log = terminalLog(arguments.common.quiet);
     checkOutputs(arguments);
     const Workers workers(arguments.common.threads);

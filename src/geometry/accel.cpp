@@ -7,6 +7,7 @@
 #include <embree3/rtcore.h>
 
 #include <pellucid/base/error.h>
+#include <pellucid/base/fp_traps.h>
 
 namespace pellucid {
 
@@ -123,7 +124,10 @@ bool Accel::intersect(const Ray& ray, RawHit& hit) const noexcept {
               ray.tMax, 0xffffffffU, 0, 0};
     rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->scene, &context, &rh);
+    {
+        const TrapsMasked masked;  // Embree computes with infinities and NaN on purpose
+        rtcIntersect1(impl_->scene, &context, &rh);
+    }
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     hit.geometry = impl_->instanced ? rh.hit.instID[0] : rh.hit.geomID;
     hit.primitive = rh.hit.primID;
@@ -139,7 +143,10 @@ bool Accel::occluded(const Ray& ray) const noexcept {
     rtcInitIntersectContext(&context);
     RTCRay r{ray.origin.x, ray.origin.y, ray.origin.z, 0.0F, ray.direction.x, ray.direction.y, ray.direction.z, 0.0F,
              ray.tMax, 0xffffffffU, 0, 0};
-    rtcOccluded1(impl_->scene, &context, &r);
+    {
+        const TrapsMasked masked;
+        rtcOccluded1(impl_->scene, &context, &r);
+    }
     return r.tfar < 0.0F;
 }
 

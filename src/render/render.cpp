@@ -15,6 +15,7 @@
 
 #include "cache_builder.h"
 #include "checkpoint.h"
+#include "endless.h"
 
 namespace pellucid {
 
@@ -61,6 +62,19 @@ private:
     return o;
 }
 
+void addEnergy(StageRecord& stage, const EnergyBalance& pass) {
+    stage.energy.add(pass);
+    ++stage.photonPasses;
+}
+
+/// The stage with its energy as the mean of its passes, in watts: powers carry the square of the scene's scale.
+[[nodiscard]] StageRecord withMeanEnergy(const StageRecord& stage, double scale) {
+    StageRecord mean = stage;
+    mean.energy = {};
+    if (stage.photonPasses > 0) mean.energy.add(stage.energy, 1.0 / (stage.photonPasses * scale * scale));
+    return mean;
+}
+
 /// The loop of iterations: each one leaves a usable image.
 class Renderer {
 public:
@@ -72,6 +86,31 @@ public:
     [[nodiscard]] RenderRecord plan() {
         prepare();
         return record();
+    }
+
+    [[nodiscard]] SampleReplay replay(int x, int y, std::uint32_t sample) {
+        if (x < 0 || y < 0 || x >= camera_.width() || y >= camera_.height())
+            throw Error(ErrorKind::Usage, "the image has no pixel " + std::to_string(x) + "," + std::to_string(y), "--debug-sample",
+                        "it is " + std::to_string(camera_.width()) + "x" + std::to_string(camera_.height()));
+        if (request_.method == Method::Light)
+            throw Error(ErrorKind::Usage, "light tracing has no samples of a pixel", "--debug-sample", "give another --method");
+        prepare();
+        // Without maps a sample depends on nothing that was before it.
+        if (!plan_.causticMap && !plan_.cache) film_.countSamples(sample);
+        else
+            for (; iteration_ < sample && !progress_.stopAsked(); ++iteration_) {
+                iterate();
+                tell("iterations before the sample");
+            }
+        makeMaps();
+        Walk walk(context_);
+        SampleReplay replay;
+        replay.width = camera_.width();
+        replay.height = camera_.height();
+        walk.writeTo(&replay.vertices);
+        FirstHit first;
+        replay.radiance = samplePixel(walk, x, y, first);
+        return replay;
     }
 
     [[nodiscard]] RenderResult run() {
@@ -102,9 +141,14 @@ private:
     void causticPass();
     void lightPass();
     void eyePass();
+    void makeMaps();
+    [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, FirstHit& first) const;
     [[nodiscard]] bool finished() const;
     [[nodiscard]] bool outOfTime() const { return request_.budget.seconds && elapsed() > kCacheShare * *request_.budget.seconds; }
     [[nodiscard]] double elapsed() const { return secondsSince(start_) + request_.budget.startedSecondsAgo; }
+    [[nodiscard]] std::size_t pixelIndex(int x, int y) const noexcept {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x);
+    }
     [[nodiscard]] RenderRecord record() const;
     void tell(std::string_view stage) const;
     /// Iterations 0, 1, 3, 7, ...: guide and radii learn from their photons.
@@ -151,6 +195,7 @@ void Renderer::prepare() {
         pilotStage_.rays += survey_.rays;
     }
     plan_ = makePlan(scene_, camera_, request_, survey_, workers_);
+    if (auto remark = endlessRemark(scene_, camera_)) plan_.blindSpots.push_back(*remark);
     pilotStage_.rays += plan_.pilotRays;
     pilotStage_.photonsEmitted += plan_.pilotPhotons;
     if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), KernelRadiusOptions{});
@@ -165,9 +210,14 @@ bool Renderer::generationDue() const {
     return !request_.budget.seconds || elapsed() + (1.0 + kGenerationShare) * next <= *request_.budget.seconds;
 }
 
-void Renderer::iterate() {
+/// What the eye paths of this iteration read.
+void Renderer::makeMaps() {
     if (generationDue()) renewGeneration();
     if (plan_.causticMap) causticPass();
+}
+
+void Renderer::iterate() {
+    makeMaps();
     if (plan_.lightPass) lightPass();
     if (request_.method != Method::Light) eyePass();
     else film_.countSamples(1);
@@ -190,6 +240,7 @@ void Renderer::renewGeneration() {
         context_.maps.global = globalMap_.get();
         globalStage_.rays += pass.rays + globalMap_->rays();
         globalStage_.photonsEmitted += pass.emitted;
+        addEnergy(globalStage_, pass.energy);
         globalStage_.photonsStored += pass.photons.size();
     }
     // Gather rays leave to the caustic map what it will hold, also before its first pass.
@@ -245,6 +296,7 @@ void Renderer::causticPass() {
     CausticPass pass = traceCausticPhotons(scene_, *guide_, {request_.seed, kCausticPass + iteration_, plan_.causticPaths}, &survey_.visible, workers_);
     causticStage_.rays += pass.rays;
     causticStage_.photonsEmitted += pass.emitted;
+    addEnergy(causticStage_, pass.energy);
     causticStage_.photonsStored += pass.photons.size();
     causticMap_ = std::make_unique<CausticMap>(std::move(pass.photons));
     context_.maps.caustic = causticMap_.get();
@@ -261,9 +313,18 @@ void Renderer::lightPass() {
     LightPass pass = traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_);
     lightStage_.rays += pass.rays;
     lightStage_.photonsEmitted += pass.emitted;
+    addEnergy(lightStage_, pass.energy);
     lightStage_.photonsStored += pass.splats.size();
     film_.addSplats(pass.splats, iteration_);
     learn(std::move(pass.useful));
+}
+
+/// The next sample of a pixel: keyed by seed, pixel and number, whatever was sampled before.
+LayeredRadiance Renderer::samplePixel(Walk& walk, int x, int y, FirstHit& first) const {
+    Sampler sampler(request_.seed, pixelIndex(x, y), film_.samples());
+    const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
+    const CameraRay ray = camera_.ray(glm::vec2(static_cast<float>(x), static_cast<float>(y)) + jitter, lens);
+    return walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), false, kernelFootprints(x, y)}, sampler, &first);
 }
 
 void Renderer::eyePass() {
@@ -275,14 +336,9 @@ void Renderer::eyePass() {
         const int x0 = static_cast<int>(tile) % tilesX * kTile, y0 = static_cast<int>(tile) / tilesX * kTile;
         for (int y = y0; y < std::min(y0 + kTile, camera_.height()); ++y)
             for (int x = x0; x < std::min(x0 + kTile, camera_.width()); ++x) {
-                const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x);
-                Sampler sampler(request_.seed, pixel, film_.samples());
-                const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
-                const CameraRay ray = camera_.ray(glm::vec2(static_cast<float>(x), static_cast<float>(y)) + jitter, lens);
                 FirstHit first;
-                const LayeredRadiance radiance =
-                    walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), false, kernelFootprints(x, y)}, sampler, &first);
-                film_.add(pixel, film_.samples(), radiance, first);
+                const LayeredRadiance radiance = samplePixel(walk, x, y, first);
+                film_.add(pixelIndex(x, y), film_.samples(), radiance, first);
             }
         rays[tile] = walk.rays();
     });
@@ -330,7 +386,8 @@ RenderRecord Renderer::record() const {
     RenderRecord r;
     r.decisions = plan_.decisions;
     r.blindSpots = plan_.blindSpots;
-    for (const StageRecord* s : {&pilotStage_, &globalStage_, &cacheStage_, &causticStage_, &lightStage_, &eyeStage_}) r.stages.push_back(*s);
+    for (const StageRecord* s : {&pilotStage_, &globalStage_, &cacheStage_, &causticStage_, &lightStage_, &eyeStage_})
+        r.stages.push_back(withMeanEnergy(*s, scene_.normalisation().scale()));
     r.iterations = iteration_;
     r.samplesPerPixel = film_.samples();
     r.seconds = elapsed();
@@ -410,6 +467,11 @@ void Renderer::resume() {
 RenderResult render(const Scene& scene, const RenderRequest& request, const Workers& workers, const Progress& progress, const LogSink& log) {
     (void)log;
     return Renderer(scene, request, workers, progress).run();
+}
+
+SampleReplay replaySample(const Scene& scene, const RenderRequest& request, int x, int y, std::uint32_t sample, const Workers& workers,
+                          const Progress& progress) {
+    return Renderer(scene, request, workers, progress).replay(x, y, sample);
 }
 
 RenderRecord planOnly(const Scene& scene, const RenderRequest& request, const Workers& workers, const LogSink& log) {

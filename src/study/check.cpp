@@ -34,10 +34,13 @@ const std::vector<CheckCase>& checkCases() {
         check::addLenses(list);
         check::addKernels(list);
         check::addMonteCarlo(list);
+        check::addEnergy(list);
         check::addScaleExtremes(list);
         check::addMaterialExtremes(list);
         check::addGeometryExtremes(list);
         check::addLampExtremes(list);
+        check::addSightExtremes(list);
+        check::addSizeExtremes(list);
         check::addPhotonExtremes(list);
         return list;
     }();
@@ -73,6 +76,8 @@ std::string_view groupName(CheckGroup group) noexcept {
             return "kernel";
         case CheckGroup::MonteCarlo:
             return "Monte Carlo";
+        case CheckGroup::Energy:
+            return "energy";
         case CheckGroup::Extreme:
             return "extreme";
     }

@@ -138,7 +138,7 @@ std::vector<Finding> concentricSpheres(const CheckContext& context) {
                                        inner ? 1.0 + rho1 * l2 : l2,
                                        1.0,
                                        inner ? "radiance of the inner" : "radiance of the outer",
-                                       {{Method::Path, 128, 0.0}, {Method::Photon, 16, 0.015}},
+                                       {{Method::Path, 128, 0.0}, {Method::Photon, 32, 0.015}},
                                        16,
                                        smallSettings()});
         all.insert(all.end(), found.begin(), found.end());

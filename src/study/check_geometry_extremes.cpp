@@ -144,7 +144,31 @@ std::vector<Finding> brokenGlass(const CheckContext& context) {
     SceneBuilder inside;
     inside.sphere(glm::dvec3(0.0), 1.0, 24, glass(1.5F), true, true);
     append(all, finite(inside, "a ball of glass with its normals inwards"));
+    SceneBuilder manifold;  // three faces at each edge of the sheet in the middle
+    manifold.box({-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8}, glass(1.5F));
+    manifold.quad({-0.8, -0.8, 0}, {1.6, 0, 0}, {0, 1.6, 0}, glass(1.5F));
+    append(all, finite(manifold, "a box of glass with a wall inside that shares its edges"));
     return all;
+}
+
+/// Two floors in one plane, of 0.2 and 0.6: which one is seen is left open, but it is one of them.
+std::vector<Finding> coplanarFaces(const CheckContext& context) {
+    SceneBuilder b;
+    b.square(glm::dvec3(0.0), kUp, 1.0, lambert(0.2F));
+    b.quad({-1.3, -1.1, 0}, {2.4, 0, 0}, {0, 2.1, 0}, lambert(0.6F));
+    b.point(kLight, 2.0);
+    b.view(glm::dvec3(0.0), kUp, kPatch, 0.3);
+    const double irradiance = meanOverSquare([](double u, double v) {
+        return pointIrradiance({kPatch * (u - 0.5), kPatch * (v - 0.5), 0.0}, kUp, kLight, 2.0);
+    });
+    return measure(context, {b.description(),
+                             {},
+                             0.4,
+                             kPiD / irradiance,
+                             "reflectance seen, 0.2 to 0.6",
+                             {{Method::Path, 8, 0.5, 0.3}, {Method::Photon, 4, 0.5, 0.3}},
+                             16,
+                             smallSettings()});
 }
 
 }  // namespace
@@ -155,9 +179,10 @@ void addGeometryExtremes(Cases& cases) {
     };
     add("extreme-bad-triangles", "triangles without area, slivers, duplicates and bad normals change nothing", false,
         badTriangles);
+    add("extreme-coplanar-faces", "two floors in one plane show one of the two", true, coplanarFaces);
     add("extreme-coincident-glass", "two touching slabs of one glass are one slab", true, coincidentGlass);
     add("extreme-thin-gap", "a gap of 1e-4 m between slabs of 6 m is air", true, thinGap);
-    add("extreme-broken-glass", "glass that is open, doubled or inside out ends finite", true, brokenGlass);
+    add("extreme-broken-glass", "glass that is open, doubled, inside out or no manifold ends finite", true, brokenGlass);
 }
 
 }  // namespace pellucid::check

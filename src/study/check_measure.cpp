@@ -1,5 +1,6 @@
 #include "check_measure.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -89,6 +90,7 @@ std::vector<Finding> measure(const CheckContext& context, Rendered what) {
     const Scene scene = makeScene(context, std::move(what.scene), std::move(what.environment));
     std::vector<Finding> findings;
     std::uint64_t nonfinite = 0;
+    double lost = 0.0;  // of the energy of a photon pass
     for (const By& by : what.by) {
         const std::string layer = by.layer.empty() ? "" : ", " + by.layer;
         findings.push_back(measureSeeds(context, fmt::format("{}, {}{}", what.quantity, methodName(by.method), layer),
@@ -96,11 +98,15 @@ std::vector<Finding> measure(const CheckContext& context, Rendered what) {
                                             const RenderResult result =
                                                 renderOnce(context, scene, by, what.settings, what.size, seed);
                                             nonfinite += result.record.nonfinite.count;
+                                            for (const StageRecord& s : result.record.stages)
+                                                if (s.photonPasses > 0)
+                                                    lost = std::max(lost, std::fabs(s.energy.residual()));
                                             return meanOf(result.image, by.layer) * what.toQuantity;
                                         }));
     }
     if (nonfinite > 0)
         findings.push_back(exact("samples that are not finite", 0.0, static_cast<double>(nonfinite), 0.0));
+    if (!(lost < 1e-9)) findings.push_back(exact("energy of a photon pass unaccounted for, share", 0.0, lost, 1e-9));
     return findings;
 }
 

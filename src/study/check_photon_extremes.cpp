@@ -123,6 +123,26 @@ std::vector<Finding> recordsOfTwoSides(const CheckContext&) {
                   std::isfinite(at(glm::vec3(kUp))) ? 1.0 : 0.0, 0.0)};
 }
 
+/// Every surface of a closed scene emits 1 and reflects a half, so all of it has radiance 2, however narrow its cracks: the
+/// camera looks into a corner of the room, and into a gap of 1e-4 between two blocks.
+std::vector<Finding> recordsInCorners(const CheckContext& context) {
+    const Material wall = lambert(static_cast<float>(kRho), 1.0F);
+    const auto room = [&](const glm::dvec3& eye, const glm::dvec3& target, double fov, const char* quantity) {
+        SceneBuilder b;
+        b.box(glm::dvec3(-1.0), glm::dvec3(1.0), wall, true);
+        b.box({-0.5, -0.3, -1.0 + 1e-4}, {-5e-5, 0.3, -0.4}, wall);
+        b.box({5e-5, -0.3, -1.0 + 1e-4}, {0.5, 0.3, -0.4}, wall);
+        b.perspective(eye, target, fov);
+        return measure(context, {b.description(), {}, 2.0, 1.0, quantity, {{Method::Path, 64, 0.0}, {Method::Photon, 8, 0.02, 0.05}}, 16, smallSettings()});
+    };
+    std::vector<Finding> all = room({0.5, 0.5, 0.5}, glm::dvec3(1.0), 0.3, "radiance in a corner");
+    const std::vector<Finding> edge = room({0.7, 0.0, 0.7}, {1.0, 0.05, 1.0}, 0.3, "radiance along an edge");
+    const std::vector<Finding> crack = room({0.0, 0.0, -0.39}, {0.0, 0.0, -0.4}, 0.05, "radiance at a crack");
+    all.insert(all.end(), edge.begin(), edge.end());
+    all.insert(all.end(), crack.begin(), crack.end());
+    return all;
+}
+
 }  // namespace
 
 void addPhotonExtremes(Cases& cases) {
@@ -136,6 +156,8 @@ void addPhotonExtremes(Cases& cases) {
     add("extreme-few-photons", "maps of no photon, of one, of a line", "[Silverman1986]", fewPhotons);
     add("extreme-records-of-two-sides", "2000 records in one place with opposite normals", "invariance",
         recordsOfTwoSides);
+    add("extreme-records-in-corners", "a closed room of Le = 1, rho = 0.5 is 2 all over, in corners and cracks too",
+        "Neumann series", recordsInCorners);
 }
 
 }  // namespace pellucid::check

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <pellucid/base/error.h>
+#include <pellucid/io/image_file.h>
 #include <pellucid/io/plain_file.h>
 #include <pellucid/study/report.h>
 
@@ -56,6 +57,18 @@ void addPictures(ReportData& data, const CompareRequest& request, const CompareR
         }
 }
 
+/// maps/METHOD_BUDGETs.exr with the channels bias.Y and deviation.Y.
+void writeMaps(const RunStore& store, const RunKey& key, const SeedMaps& maps) {
+    Image both(maps.bias.width(), maps.bias.height(), {"bias.Y", "deviation.Y"});
+    for (std::size_t i = 0; i < both.pixels(); ++i) {
+        both.at(i, 0) = maps.bias.at(i, 0);
+        both.at(i, 1) = maps.deviation.at(i, 0);
+    }
+    const std::filesystem::path folder = store.folder() / "maps";
+    std::filesystem::create_directories(folder);
+    writeExr(folder / (key.series() + ".exr"), both, {{"pellucid.method", key.label}});
+}
+
 /// Maps at the longest budget.
 void addMaps(ReportData& data, const CompareRequest& request, const CompareRuns& runs,
              const CompareReference& reference, const RunStore& store, const Workers& workers) {
@@ -65,6 +78,7 @@ void addMaps(ReportData& data, const CompareRequest& request, const CompareRuns&
         std::vector<Image> images(cell.size());
         workers.forEach(cell.size(), 1, [&](std::size_t i) { images[i] = store.readImage(*cell[i]); });
         SeedMaps maps = seedMaps(reference.image, images);
+        writeMaps(store, cell.front()->key, maps);
         data.maps.push_back({method.label, "bias", request.times.back(), std::move(maps.bias)});
         data.maps.push_back({method.label, "deviation", request.times.back(), std::move(maps.deviation)});
     }

@@ -109,8 +109,9 @@ void writeState(const std::filesystem::path& file, const ReferenceState& state) 
     std::string remark;
     if (!reference.goodEnough)
         remark = "the reference could not be made good enough: its own error is " + figure(100.0 * error) +
-                 " % after " + duration(reference.seconds) + ", the best run's is " + figure(100.0 * best) +
-                 " %; give --reference FILE or a longer --reference-time";
+                 " % after " + duration(reference.seconds) + ", the best run's " +
+                 (best > 0.0 ? "is " + figure(100.0 * best) + " %" : "cannot be told from it") +
+                 "; give --reference FILE or a longer --reference-time";
     for (const std::string& blind : reference.blindSpots)
         remark += (remark.empty() ? "" : "; ") + ("the reference cannot see: " + blind);
     return remark;

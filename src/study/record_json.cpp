@@ -24,15 +24,23 @@ using Json = nlohmann::ordered_json;
     return json;
 }
 
+/// Watts; `residual` is the share of the emitted power that no sink accounts for: rounding, or a defect.
+[[nodiscard]] Json energyJson(const EnergyBalance& e) {
+    return {{"emitted", e.emitted},   {"escaped", e.escaped}, {"absorbed", e.absorbed}, {"stored", e.stored},
+            {"left_to_others", e.left}, {"roulette", e.roulette}, {"dropped", e.dropped}, {"residual", e.residual()}};
+}
+
 [[nodiscard]] Json stagesJson(const std::vector<StageRecord>& stages) {
     Json json = Json::array();
-    for (const StageRecord& s : stages)
+    for (const StageRecord& s : stages) {
         json.push_back({{"name", s.name},
                         {"seconds", s.seconds},
                         {"rays", s.rays},
                         {"photons_emitted", s.photonsEmitted},
                         {"photons_stored", s.photonsStored},
                         {"records", s.records}});
+        if (s.photonPasses > 0) json.back()["energy"] = energyJson(s.energy);
+    }
     return json;
 }
 

@@ -112,12 +112,24 @@ std::string imageHash(const Image& image) {
     return hex(hash);
 }
 
-std::string RunKey::name() const {
+namespace {
+
+[[nodiscard]] std::string readableName(const std::string& label) {
     std::string readable;
     for (const char c : label)
         if (readable.size() < 40)
             readable += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' ? c : '_';
-    return readable + "_" + figure(budget) + "s_" + std::to_string(seed) + "_" + hashText(text).substr(0, 8);
+    return readable;
+}
+
+}  // namespace
+
+std::string RunKey::name() const {
+    return readableName(label) + "_" + figure(budget) + "s_" + std::to_string(seed) + "_" + hashText(text).substr(0, 8);
+}
+
+std::string RunKey::series() const {
+    return readableName(label) + "_" + figure(budget) + "s_" + hashText(label).substr(0, 8);
 }
 
 RunStore::RunStore(std::filesystem::path folder) : folder_(std::move(folder)) {

@@ -23,7 +23,8 @@ struct RunKey {
     std::string label, text;  ///< `text` holds scene hash, settings hash, size, camera, threads, budget and seed
     double budget = 0.0;
     std::uint64_t seed = 0;
-    [[nodiscard]] std::string name() const;  ///< of its files, without extension: readable and unique
+    [[nodiscard]] std::string name() const;    ///< of its files, without extension: readable and unique
+    [[nodiscard]] std::string series() const;  ///< the same for all of its seeds
 };
 
 /// Figures of a run against one reference.

@@ -10,6 +10,7 @@
 #include <pellucid/base/parallel.h>
 #include <pellucid/math/sampler.h>
 #include <pellucid/scene/scene.h>
+#include <pellucid/transport/energy.h>
 
 namespace pellucid::light_path {
 
@@ -26,6 +27,14 @@ struct LightPath {
     Rgb absorption{0.0F};
     bool mediumKnown = false;
     int vertices = 0;
+    EnergyBalance energy = {};
+    /// What the flux that the next scattering takes away goes to.
+    double EnergyBalance::*sink = &EnergyBalance::absorbed;
+
+    LightPath(const Ray& start, const Rgb& power) noexcept : ray(start), flux(power) { energy.emitted = watts(); }
+    [[nodiscard]] double watts() const noexcept {
+        return (static_cast<double>(flux.r) + static_cast<double>(flux.g) + static_cast<double>(flux.b)) / 3.0;
+    }
 };
 
 struct Arrival {
@@ -39,7 +48,10 @@ struct Arrival {
 [[nodiscard]] inline std::optional<Arrival> arrive(const Scene& scene, LightPath& path, Sampler& sampler) noexcept {
     sampler.setDimension(kEmissionDimensions + kDimensionsPerVertex * static_cast<std::uint64_t>(path.vertices));
     const auto hit = scene.intersect(path.ray, scene.hasHoles() ? sampler.next1D() : 0.0F);
-    if (!hit) return std::nullopt;
+    if (!hit) {
+        path.energy.escaped += path.watts();
+        return std::nullopt;
+    }
     ++path.vertices;
     const glm::vec3 wi = -path.ray.direction;
     const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wi);
@@ -47,9 +59,16 @@ struct Arrival {
         if (bsdf.backSide() && bsdf.bordersVolume()) path.absorption = scene.surfaces().materials()[hit->point.material].absorption;
         path.mediumKnown = true;
     }
-    if (!isBlack(path.absorption)) path.flux *= glm::exp(-path.absorption * hit->distance);
+    if (!isBlack(path.absorption)) {
+        path.energy.absorbed += path.watts();
+        path.flux *= glm::exp(-path.absorption * hit->distance);
+        path.energy.absorbed -= path.watts();
+    }
     const float geometric = std::fabs(glm::dot(wi, bsdf.geometricNormal()));
-    if (geometric < kMinGeometricCosine) return std::nullopt;
+    if (geometric < kMinGeometricCosine) {
+        path.energy.dropped += path.watts();
+        return std::nullopt;
+    }
     return Arrival{*hit, bsdf, wi, std::fabs(glm::dot(wi, bsdf.shadingNormal())) / geometric};
 }
 
@@ -58,6 +77,7 @@ struct Arrival {
                                   LobeKinds* by = nullptr) noexcept {
     const float chooseLobe = sampler.next1D();
     const auto sample = a.bsdf.sample(a.wi, chooseLobe, sampler.next2D(), kinds, TransportMode::Flux);
+    path.energy.*path.sink += path.watts();
     if (!sample) return false;
     if (by != nullptr) *by = sample->kind;
     const float shadingOut = std::fabs(glm::dot(sample->wi, a.bsdf.shadingNormal()));
@@ -65,11 +85,14 @@ struct Arrival {
     if (!(shadingOut > 0.0F)) return false;
     const float before = maxComponent(path.flux);
     path.flux *= sample->weight * (a.shading * geometricOut / shadingOut);
+    path.energy.*path.sink -= path.watts();
     const float after = maxComponent(path.flux);
     float survive = before > 0.0F ? std::min(1.0F, after / before) : 0.0F;
     if (path.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
+    path.energy.roulette += path.watts();
     if (!(survive > 0.0F) || sampler.next1D() >= survive) return false;
     path.flux /= survive;
+    path.energy.roulette -= path.watts();
     const bool behind = glm::dot(sample->wi, a.bsdf.geometricNormal()) < 0.0F;
     path.ray = Ray{offsetOrigin(a.hit.point.position, behind ? -a.bsdf.geometricNormal() : a.bsdf.geometricNormal()), sample->wi,
                    std::numeric_limits<float>::infinity()};

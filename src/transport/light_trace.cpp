@@ -49,14 +49,17 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
             ++out.rays;
             const auto a = arrive(scene, path, sampler);
             if (!a) break;
+            path.sink = (a->bsdf.kinds() & (kGlossy | kDiffuse)) != kNoLobe ? &EnergyBalance::left : &EnergyBalance::absorbed;
             if (path.vertices > 1 && (a->bsdf.kinds() & (kGlossy | kDiffuse)) != kNoLobe) {
                 if (const auto splat = connect(scene, camera, *a, path.flux * perPath, lens, out.rays)) {
                     out.splats.push_back(*splat);
+                    path.sink = &EnergyBalance::stored;
                     arrived += luminance(path.flux);
                 }
             }
             if (!scatter(scene, path, *a, kSpecular, sampler)) break;
         }
+        out.energy.add(path.energy, static_cast<double>(perPath));
         if (arrived > 0.0F) {
             UsefulEmission origin = start->origin;
             origin.weight = arrived;
@@ -69,6 +72,7 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
         pass.splats.insert(pass.splats.end(), c.splats.begin(), c.splats.end());
         pass.useful.insert(pass.useful.end(), c.useful.begin(), c.useful.end());
         pass.rays += c.rays;
+        pass.energy.add(c.energy);
     }
     return pass;
 }

@@ -34,10 +34,12 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
             ++out.rays;
             const auto a = arrive(scene, path, sampler);
             if (!a) break;
+            path.sink = receives(*a) ? &EnergyBalance::left : &EnergyBalance::absorbed;
             if (path.vertices > 1 && receives(*a)) {
                 const Photon photon = photonOf(*a, path.flux, perPath);
                 if (usable(photon) && (visible == nullptr || visible->seen(photon.position))) {
                     out.photons.push_back(photon);
+                    path.sink = &EnergyBalance::stored;
                     arrived += path.flux;
                     if (!useful) landed = photon.position;
                     useful = true;
@@ -45,6 +47,7 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
             }
             if (!scatter(scene, path, *a, kSpecular, sampler)) break;
         }
+        out.energy.add(path.energy, static_cast<double>(perPath));
         if (useful && emitted > 0.0F) {
             UsefulEmission origin = start->origin;
             origin.weight = luminance(arrived);
@@ -58,6 +61,7 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
         append(pass.photons, c.photons);
         append(pass.useful, c.useful);
         pass.rays += c.rays;
+        pass.energy.add(c.energy);
     }
     return pass;
 }
@@ -83,12 +87,14 @@ GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, cons
             if (!scatter(scene, path, *a, kAllLobes, sampler, &by)) break;
             arrived = by == kSpecular && arrived != Arrived::Otherwise ? Arrived::OverSpecular : Arrived::Otherwise;
         }
+        out.energy.add(path.energy, static_cast<double>(perPath));
     });
     GlobalPass pass;
     pass.emitted = key.paths;
     for (const GlobalPass& c : chunks) {
         append(pass.photons, c.photons);
         pass.rays += c.rays;
+        pass.energy.add(c.energy);
     }
     return pass;
 }

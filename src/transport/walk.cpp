@@ -1,6 +1,7 @@
 #include <pellucid/transport/walk.h>
 
 #include <cmath>
+#include <limits>
 
 #include <pellucid/math/constants.h>
 #include <pellucid/transport/caustic_map.h>
@@ -241,6 +242,7 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     if (firstDistance != nullptr && state.vertices == 0)
         *firstDistance = hit ? hit->distance : std::numeric_limits<float>::infinity();
     if (!hit) {
+        if (trace_ != nullptr) write(state, nullptr, nullptr);
         addEscaped(state);
         return false;
     }
@@ -253,6 +255,7 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
         state.ray.mediumKnown = true;
     }
     if (!isBlack(state.ray.absorption)) state.throughput *= transmittance(state.ray.absorption, hit->distance);
+    if (trace_ != nullptr) write(state, &*hit, &bsdf);
     addEmitted(state, *hit);
     const bool transmits = context_.scene.surfaces().materials()[hit->point.material].transmission > 0.0F;
     const Vertex vertex{*hit, bsdf, wo, state.ray.footprintAtOrigin + state.ray.footprintSpread * state.pathLength,
@@ -284,6 +287,27 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     if (!scatter(state, vertex, sampled, sampler)) return false;
     state.lampSampled = state.pdfSolidAngle > 0.0F;
     return true;
+}
+
+void Walk::write(const State& state, const SurfaceHit* hit, const Bsdf* bsdf) const {
+    TracedVertex vertex;
+    vertex.throughput = state.throughput;
+    vertex.before = state.radiance;
+    if (hit == nullptr) {
+        vertex.hit = false;
+        vertex.position = state.ray.ray.direction;
+        vertex.distance = std::numeric_limits<float>::infinity();
+    } else {
+        vertex.position = hit->point.position;
+        vertex.normal = bsdf->shadingNormal();
+        vertex.distance = hit->distance;
+        vertex.geometry = hit->point.geometry;
+        vertex.primitive = hit->point.primitive;
+        vertex.material = hit->point.material;
+        vertex.kinds = bsdf->kinds();
+        vertex.backSide = bsdf->backSide();
+    }
+    trace_->push_back(vertex);
 }
 
 void Walk::run(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept {

@@ -1,11 +1,22 @@
 #!/usr/bin/env bash
 # Opens a report.html in headless Chromium, works its controls and holds what it sees: curves drawn, slider moves, the
 # pixel under the pointer is that of the EXR, no console error, no network request.
-# usage: check_report.sh FOLDER-OF-A-COMPARISON   (needs chromium and oiiotool)
+# usage: check_report.sh FOLDER-OF-A-COMPARISON
+#        check_report.sh --make PELLUCID SCENE   makes a small comparison first
+# Where chromium, oiiotool or python3 is missing it says so and exits with 77, which ctest shows as skipped.
 set -euo pipefail
-folder=$(cd "$1" && pwd)
+for tool in chromium oiiotool python3; do
+    command -v "$tool" >/dev/null || { echo "skipped: $tool is missing"; exit 77; }
+done
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+if [ "$1" = --make ]; then
+    folder=$work/comparison
+    "$2" compare "$3" -o "$folder" --methods path,photon:cache.error=0.3,light --times 0.2,0.4 --seeds 3 --size 40x30 \
+        --reference-time 2 --quiet
+else
+    folder=$(cd "$1" && pwd)
+fi
 
 # The page with a script behind it that acts as a user and writes what it found.
 cp "$folder/report.html" "$work/page.html"
@@ -22,32 +33,62 @@ divider.dispatchEvent(new KeyboardEvent("keydown", {key: "PageUp", bubbles: true
 found.sliderMoved = divider.getAttribute("aria-valuenow") !== before;
 for (const mode of ["luminance", "error", "colour"]) { const m = document.getElementById("mode"); m.value = mode; m.onchange(); }
 const exposure = document.getElementById("exposure"); exposure.value = 2; exposure.oninput();
-const box = document.getElementById("canvas").getBoundingClientRect();
-document.getElementById("viewer").dispatchEvent(new PointerEvent("pointermove", {pointerId: 1, clientX: box.left + .3 * box.width, clientY: box.top + .4 * box.height, bubbles: true}));
+// The pointer goes to the median of the left picture's lit pixels: a value that is none of black, white and the same all over.
+const shown = decode(view.left), lit = Array.from({length: shown.length / 3}, (_, i) => i).filter(i => shown[3 * i + 1] > 0).sort((a, b) => shown[3 * a + 1] - shown[3 * b + 1]);
+const target = lit[lit.length >> 1], box = document.getElementById("canvas").getBoundingClientRect();
+document.getElementById("viewer").dispatchEvent(new PointerEvent("pointermove", {pointerId: 1, bubbles: true,
+  clientX: box.left + (target % view.left.width + .5) / view.left.width * box.width, clientY: box.top + (Math.floor(target / view.left.width) + .5) / view.left.height * box.height}));
 found.pixel = JSON.parse(document.getElementById("pixel").dataset.values);
 const l = view.left, run = report.curves.find(r => r.method === l.label && r.budget === l.budget && r.seed === l.seed);
 found.requests = performance.getEntriesByType("resource").map(r => r.name).filter(n => !/^(data|blob):/.test(n));
+// Zoom and pan by the keyboard move both pictures; the legend's buttons hide a curve and bring it back.
+const keyed = key => document.getElementById("viewer").dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
+keyed("+"); keyed("+"); const zoomed = view.zoom, panned = view.x; keyed("ArrowRight");
+found.zoomed = zoomed > 2 && view.x > panned; keyed("0"); found.reset = view.zoom === 1 && view.x === 0;
+const button = document.querySelector("#legend button"); button.click();
+found.hidden = document.querySelectorAll("#curves path.line").length; button.click();
+found.bars = document.querySelectorAll("#classes rect").length; found.maps = document.querySelectorAll("#maps figure").length;
+found.rows = document.querySelectorAll("#figures tbody tr").length; found.plans = document.querySelectorAll("#plans details").length;
+found.commands = document.querySelectorAll("#commands pre").length;
+// Every control has a name that a screen reader can say, and nothing is wider than the page.
+found.nameless = Array.from(document.querySelectorAll("button, select, input, [role=slider], [role=application], [role=img]")).filter(e =>
+  !(e.getAttribute("aria-label") || e.textContent.trim() || (e.closest("label") && e.closest("label").textContent.trim()))).length;
+found.wide = document.documentElement.scrollWidth - document.documentElement.clientWidth;
 found.image = run.image; found.bytes = l.bytes; found.halved = l.halved;
 for (const s of document.querySelectorAll("script[type]")) s.remove();
 document.body.append("FOUND" + JSON.stringify(found) + "END");
 </script>
 SCRIPT
 
-chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
-    --disable-component-update --disable-sync --user-data-dir="$work/profile" --enable-logging=stderr \
-    --host-resolver-rules="MAP * ~NOTFOUND" --virtual-time-budget=5000 --dump-dom "file://$work/page.html" \
-    >"$work/dom.html" 2>"$work/log"
+fail() {
+    echo "check_report: $1" >&2
+    exit 4
+}
 
-fail() { echo "check_report: $1" >&2; exit 4; }
-! grep 'CONSOLE' "$work/log" || fail "the console is not empty"
-found=$(grep -oE 'FOUND\{.*\}END' "$work/dom.html" | sed 's/^FOUND//; s/END$//') || fail "the script did not finish"
-python3 - "$folder" "$work" "$found" <<'PYTHON'
+# Opens the page in a window of WIDTH,HEIGHT and holds what the script found.
+look() {
+    chromium --headless --no-sandbox --window-size="$1" --disable-gpu --disable-quic --no-first-run \
+        --disable-background-networking --disable-component-update --disable-sync --user-data-dir="$work/profile" \
+        --enable-logging=stderr --host-resolver-rules="MAP * ~NOTFOUND" --virtual-time-budget=5000 --dump-dom \
+        "file://$work/page.html" >"$work/dom.html" 2>"$work/log"
+    ! grep 'CONSOLE' "$work/log" || fail "the console is not empty"
+    found=$(grep -oE 'FOUND\{.*\}END' "$work/dom.html" | sed 's/^FOUND//; s/END$//') || fail "the script did not finish"
+    python3 "$work/hold.py" "$folder" "$work" "$found" || fail "in a window of $1"
+}
+
+cat >"$work/hold.py" <<'PYTHON'
 import json, struct, subprocess, sys
 folder, work, found = sys.argv[1], sys.argv[2], json.loads(sys.argv[3])
 assert found["ready"], "the page did not finish"
 assert found["curves"] == found["methods"] and found["longestCurve"] > 5, "curves are missing"
 assert not found["requests"], "the page asked for " + str(found["requests"])
 assert found["sliderMoved"], "the slider did not move"
+assert found["zoomed"] and found["reset"], "zoom and pan do not answer the keyboard"
+assert found["hidden"] == found["methods"] - 1, "the legend hides no curve"
+for part in ("bars", "maps", "rows", "plans", "commands"):
+    assert found[part] > 0, part + " are missing"
+assert found["nameless"] == 0, f"{found['nameless']} controls have no name"
+assert found["wide"] <= 0, f"the page is {found['wide']} pixels wider than its window"
 assert not found["halved"], "this report's pictures are halved: check one with smaller images"
 p = found["pixel"]
 # One pixel as an uncompressed TIFF file of floats: its data stand where tag 273 (StripOffsets) says.
@@ -62,3 +103,6 @@ for shown, value in zip(p["left"], exr):
     assert abs(shown - value) <= tolerance * abs(value), (p, exr)
 print(f"report: {found['curves']} curves, slider, pixel {p['x']},{p['y']} = {exr} ({found['bytes']} bytes a value), no console output, no request")
 PYTHON
+
+look 1200,900
+look 390,844

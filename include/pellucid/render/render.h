@@ -13,6 +13,8 @@
 #include <pellucid/base/progress.h>
 #include <pellucid/math/image.h>
 #include <pellucid/render/settings.h>
+#include <pellucid/transport/energy.h>
+#include <pellucid/transport/walk_trace.h>
 
 namespace pellucid {
 
@@ -44,6 +46,8 @@ struct StageRecord {
     std::string name;
     double seconds = 0.0;
     std::uint64_t rays = 0, photonsEmitted = 0, photonsStored = 0, records = 0;
+    std::uint32_t photonPasses = 0;
+    EnergyBalance energy = {};              ///< of the photon passes, W: their mean in a RenderRecord
 };
 
 struct Decision {
@@ -77,6 +81,18 @@ struct RenderResult {
 
 [[nodiscard]] RenderResult render(const Scene& scene, const RenderRequest& request, const Workers& workers,
                                   const Progress& progress = {}, const LogSink& log = {});
+
+/// One sample of a render again, vertex by vertex.
+struct SampleReplay {
+    std::vector<TracedVertex> vertices;
+    LayeredRadiance radiance;
+    int width = 0, height = 0;              ///< of the image that the sample belongs to
+};
+
+/// The very sample that render() would take: the iterations before it are made again as far as it depends on them. Throws
+/// Error{Usage} for a pixel outside of the image or a method without eye paths of its own.
+[[nodiscard]] SampleReplay replaySample(const Scene& scene, const RenderRequest& request, int x, int y, std::uint32_t sample,
+                                        const Workers& workers, const Progress& progress = {});
 
 /// What render() would do, with the predicted cost of each pass, without rendering.
 [[nodiscard]] RenderRecord planOnly(const Scene& scene, const RenderRequest& request, const Workers& workers,

@@ -15,7 +15,7 @@
 
 namespace pellucid {
 
-enum class CheckGroup { ClosedForm, Kernel, MonteCarlo, Extreme };
+enum class CheckGroup { ClosedForm, Kernel, MonteCarlo, Energy, Extreme };
 
 /// A figure against its expectation. It passes when they are no further apart than confidence and allowed bias together,
 /// and when the confidence interval is narrow enough to mean something.

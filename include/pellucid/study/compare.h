@@ -41,7 +41,7 @@ struct CompareRequest {
     std::filesystem::path reference;          ///< empty: one is made
     double referenceTime = 0.0;               ///< longest time to make one, in seconds; 0: 100 times the longest budget
     Settings settings;                        ///< of the reference that is made
-    std::string version, sceneFile, command;  ///< for the files
+    std::string version, sceneFile, environment, command;  ///< for the files
 };
 
 /// A scene is built for its settings (surface.cast_roughness belongs to it) and may be built once for several methods.

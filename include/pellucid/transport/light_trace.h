@@ -21,6 +21,7 @@ struct LightPass {
     std::vector<LightSplat> splats;   ///< in the order of the paths
     std::vector<UsefulEmission> useful;
     std::uint64_t rays = 0, emitted = 0;
+    EnergyBalance energy;             ///< of the pass, scene units
 };
 
 [[nodiscard]] LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide, const PhotonPassKey& key,

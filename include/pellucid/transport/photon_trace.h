@@ -8,6 +8,7 @@
 #include <pellucid/base/parallel.h>
 #include <pellucid/scene/scene.h>
 #include <pellucid/transport/emission_guide.h>
+#include <pellucid/transport/energy.h>
 #include <pellucid/transport/photon.h>
 #include <pellucid/transport/radiance_map.h>
 #include <pellucid/transport/visible_cells.h>
@@ -24,11 +25,13 @@ struct CausticPass {
     PhotonList photons;              ///< L S+ D
     std::vector<UsefulEmission> useful;
     std::uint64_t rays = 0, emitted = 0;
+    EnergyBalance energy;            ///< of the pass, scene units
 };
 
 struct GlobalPass {
     std::vector<GlobalPhoton> photons;
     std::uint64_t rays = 0, emitted = 0;
+    EnergyBalance energy;            ///< of the pass, scene units
 };
 
 /// L S+ D photons by guided emission. `visible`: photons outside of it are dropped, and not useful (null: all are).

@@ -8,6 +8,7 @@
 #include <pellucid/math/sampler.h>
 #include <pellucid/scene/scene.h>
 #include <pellucid/transport/path_classes.h>
+#include <pellucid/transport/walk_trace.h>
 
 namespace pellucid {
 
@@ -79,6 +80,9 @@ public:
     /// Follows S and G lobes to the first D vertex.
     [[nodiscard]] GatherPoint findGatherPoint(const WalkRay& ray, Sampler& sampler) noexcept;
 
+    /// From now on every vertex is written down there (null: no longer).
+    void writeTo(WalkTrace* trace) noexcept { trace_ = trace; }
+
     [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
     [[nodiscard]] std::uint64_t cacheMisses() const noexcept { return cacheMisses_; }
 
@@ -94,8 +98,11 @@ private:
     [[nodiscard]] bool scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] float misWeight(float mine, float other) const noexcept;
 
+    void write(const State& state, const SurfaceHit* hit, const Bsdf* bsdf) const;
+
     const TransportContext& context_;
     bool holes_;
+    WalkTrace* trace_ = nullptr;
     std::uint64_t rays_ = 0, cacheMisses_ = 0;
 };
 

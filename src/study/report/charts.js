@@ -49,7 +49,7 @@ function logTicks(scale, room) {
 
 function drawCurves() {
   const [, title, ofPoint, ofRun] = metrics[$("metric").selectedIndex];
-  const width = chartWidth("curves"), height = Math.min(520, Math.max(320, width * .5)), box = {left: 70, right: width - 16, top: 12, bottom: height - 46};
+  const width = chartWidth("curves"), height = Math.min(520, Math.max(320, width * .5)), box = {left: 86, right: width - 16, top: 12, bottom: height - 46};
   const svg = newSvg("curves", width, height, `${title} against seconds, both axes logarithmic, for ${methods.map(m => m.method).join(", ")}. The table under Figures holds the values.`);
   const shown = methods.filter(m => !hidden.has(m.method)).map(m => ({name: m.method, points: m.points.map(p => ({p, x: p.seconds.value, i: ofPoint(p)})).filter(q => q.i.value > 0)}));
   const runs = ofRun && $("show-runs").checked ? report.curves.filter(r => !hidden.has(r.method) && ofRun(r) > 0) : [];
@@ -58,7 +58,7 @@ function drawCurves() {
   const x = d3.scaleLog().domain([d3.min(xs) / 1.25, d3.max(xs) * 1.25]).range([box.left, box.right]);
   const y = d3.scaleLog().domain([d3.min(ys) / 1.3, d3.max(ys) * 1.3]).range([box.bottom, box.top]).clamp(true);
   const xTicks = logTicks(x, 2.2), yTicks = logTicks(y, 2.2), percent = title.startsWith("error");
-  const name = v => percent ? figure(100 * v) + " %" : figure(v);
+  const name = v => percent ? (v >= 1e3 ? (100 * v).toExponential(0).replace("e+", "e") : figure(100 * v)) + " %" : figure(v);
   svg.append("g").attr("class", "grid").selectAll("line").data(yTicks).enter().append("line").attr("x1", box.left).attr("x2", box.right).attr("y1", y).attr("y2", y);
   svg.append("g").attr("class", "grid").selectAll("line").data(xTicks).enter().append("line").attr("x1", x).attr("x2", x).attr("y1", box.top).attr("y2", box.bottom);
   svg.append("g").attr("transform", `translate(0,${box.bottom})`).call(d3.axisBottom(x).tickValues(xTicks).tickFormat(v => figure(v)));

@@ -54,6 +54,17 @@ function writeFigures() {
   d3.select("#pairs").append("p").attr("class", "hint").text("Permutation test of log relMSE over the seeds; p adjusted by Holm for the whole table, so that the chance of any false “yes” stays below 5 %.");
 }
 
+// The command that renders one run, with what was set; quoted for a shell where it has to be.
+function renderCommand(m) {
+  const quoted = t => /^[\w.\-+=,:\/%@]+$/.test(t) ? t : "'" + t.replace(/'/g, "'\\''") + "'";
+  const words = ["pellucid", "render", summary.scene, "-o", m.method.replace(/[^\w.\-]/g, "_") + ".exr", "--method", m.integrator, "--time", summary.times[summary.times.length - 1],
+    "--seed", summary.first_seed, "--size", `${summary.width}x${summary.height}`, "--threads", summary.threads];
+  if (summary.camera) words.push("--camera", summary.camera);
+  if (summary.environment) words.push("--env", summary.environment);
+  for (const [name, value] of Object.entries(m.settings)) words.push("--set", `${name}=${value}`);
+  return words.map(w => quoted(String(w))).join(" ");
+}
+
 function writeSettings() {
   const first = methods.map(m => report.runs.find(r => r.method === m.method)), names = [...new Set(first.flatMap(r => r ? Object.keys(r.settings) : []))];
   addTable("settings", ["setting"].concat(methods.map(m => m.method)), names.map(n => [n].concat(first.map((r, i) => {
@@ -68,6 +79,8 @@ function writeSettings() {
     addTable("plan-" + i, ["decision", "choice", "reason"], run.plan.map(d => [d.name, d.choice + (d.overridden ? " (set)" : ""), d.reason]), true);
   }
   d3.select("#commands").append("pre").text(summary.command);
+  d3.select("#commands").append("p").text("One run alone, at the longest time and with the first seed:");
+  d3.select("#commands").append("pre").text(methods.map(renderCommand).join("\n"));
   d3.select("#commands").append("p").attr("class", "hint").text("Finished runs in the folder are not rendered again; delete the folder, or give another one, to measure anew. Times depend on the machine: run nothing else beside it.");
 }
 
