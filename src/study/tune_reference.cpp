@@ -27,6 +27,12 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t kSeeds[2] = {0x74756e6552656641ULL, 0x74756e6552656642ULL};  // far from the trials' seeds
 constexpr double kPilotShare = 0.05;  // of the limit, to learn how many samples fit
 constexpr std::uint32_t kLeastSamples = 4;
+constexpr double kCleanEnough = 1e-3;  // relmse of the R in a weight: its bias is about 6 times the square of that [D]
+constexpr int kWidestBlur = 3;         // in pixels to each side
+
+[[nodiscard]] std::size_t pixelAt(int x, int y, int width) noexcept {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
 
 struct HalfState {
     std::string key;
@@ -135,33 +141,67 @@ void writeState(const std::filesystem::path& file, const HalfState& state) {
     const auto noise = referenceNoise(reference.mean);
     reference.noise = noise.value_or(0.0);
     if (!noise) reference.remark = "the reference has no layers variance.*: its own noise counts as error of every render";
+    reference.weigh();
     return reference;
 }
 
 }  // namespace
 
+void TuneReference::weigh() {
+    const ImagePair pair(first.pixels() > 0 ? first : mean, second.pixels() > 0 ? second : mean), whole(mean, mean);
+    const double floor = whole.relativeFloor();
+    double noiseSum = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < pair.pixels(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double d = 0.5 * static_cast<double>(pair.image(i, c) - pair.reference(i, c));
+            const double r = static_cast<double>(whole.reference(i, c));
+            const double term = d * d / (r * r + floor);
+            if (!std::isfinite(term)) continue;
+            noiseSum += term;
+            count += 1.0;
+        }
+    const double share = count > 0.0 ? noiseSum / count : 0.0;
+    int radius = 0;
+    while (radius < kWidestBlur && share / ((2 * radius + 1) * (2 * radius + 1)) > kCleanEnough) ++radius;
+    weights = Image(mean.width(), mean.height(), {"R", "G", "B"});
+    for (int y = 0; y < mean.height(); ++y)
+        for (int x = 0; x < mean.width(); ++x) {
+            const std::size_t pixel = pixelAt(x, y, mean.width());
+            if (!whole.counts(pixel)) continue;
+            for (std::size_t c = 0; c < 3; ++c) {
+                double sum = 0.0, number = 0.0;
+                for (int v = std::max(0, y - radius); v <= std::min(mean.height() - 1, y + radius); ++v)
+                    for (int u = std::max(0, x - radius); u <= std::min(mean.width() - 1, x + radius); ++u) {
+                        sum += static_cast<double>(whole.reference(pixelAt(u, v, mean.width()), c));
+                        number += 1.0;
+                    }
+                const double r = sum / number, weight = 1.0 / (r * r + floor);
+                weights.at(pixel, static_cast<int>(c)) = std::isfinite(weight) ? static_cast<float>(weight) : 0.0F;
+            }
+        }
+}
+
 double TuneReference::relmse(const Image& image, const std::vector<PixelWindow>& windows) const {
     const bool halves = first.pixels() > 0;
-    const ImagePair a(halves ? first : mean, image), b(halves ? second : mean, image), whole(mean, image);
-    const double floor = whole.relativeFloor();
+    const ImagePair a(halves ? first : mean, image), b(halves ? second : mean, image);
     double sum = 0.0, count = 0.0;
-    const auto add = [&](int x0, int y0, int x1, int y1) {
-        for (int y = y0; y < y1; ++y)
-            for (int x = x0; x < x1; ++x) {
-                const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) + static_cast<std::size_t>(x);
-                if (!whole.counts(pixel)) continue;
+    const auto add = [&](const PixelWindow& w) {
+        for (int y = w.y0; y < w.y1; ++y)
+            for (int x = w.x0; x < w.x1; ++x) {
+                const std::size_t pixel = pixelAt(x, y, image.width());
                 for (std::size_t c = 0; c < 3; ++c) {
-                    const double value = static_cast<double>(whole.image(pixel, c)), r = static_cast<double>(whole.reference(pixel, c));
+                    const double weight = static_cast<double>(weights.at(pixel, static_cast<int>(c)));
+                    const double value = static_cast<double>(a.image(pixel, c));
                     const double product = (value - static_cast<double>(a.reference(pixel, c))) *
                                            (value - static_cast<double>(b.reference(pixel, c)));
-                    if (!std::isfinite(product) || !std::isfinite(r)) continue;
-                    sum += product / (r * r + floor);
+                    if (!(weight > 0.0) || !std::isfinite(product)) continue;
+                    sum += weight * product;
                     count += 1.0;
                 }
             }
     };
-    if (windows.empty()) add(0, 0, image.width(), image.height());
-    for (const PixelWindow& w : windows) add(w.x0, w.y0, w.x1, w.y1);
+    if (windows.empty()) add({0, 0, image.width(), image.height()});
+    for (const PixelWindow& w : windows) add(w);
     return (count > 0.0 ? sum / count : 0.0) - noise;
 }
 
@@ -192,6 +232,7 @@ TuneReference referenceFor(const TuneRequest& request, const SceneSource& scenes
     reference.first = std::move(halves[0]);
     reference.second = std::move(halves[1]);
     reference.mean = meanOf(reference.first, reference.second);
+    reference.weigh();
     if (!std::filesystem::exists(request.folder / "reference.exr"))
         writeExr(request.folder / "reference.exr", reference.mean, {{"pellucid.version", request.version}});
     return reference;

@@ -42,7 +42,8 @@ protected:
     /// Rounds instead of seconds: what is tested does not depend on the machine.
     [[nodiscard]] std::string command(const std::string& name, const std::string& more = "") const {
         return "tune " + scene() + " -o '" + (folder_ / name).string() +
-               "' --time 0.05 --iterations 1 --size 32x24 --set photon.global=1000 --over cache.error=0.2..1,cache.rays=16..64 " + more;
+               "' --time 0.01 --iterations 1 --size 24x18 --set photon.global=1000 --set cache.rays=16 "
+               "--over cache.error=0.3..1,cache.max_spacing=5..40 " + more;
     }
 
     fs::path folder_;
@@ -76,8 +77,8 @@ TEST_F(TuneCli, TheSameSeedAndRoundsGiveTheSameFrontAlsoAfterAnInterruption) {
 
     // Interrupted again and again, until it is done: the same bytes.
     int status = 130;
-    for (int attempt = 0; attempt < 40 && status == 130; ++attempt)
-        status = run(command("b", "--threads 2"), "timeout --foreground -s INT " + std::to_string(0.4 + 0.2 * attempt) + " ");
+    for (int attempt = 0; attempt < 12 && status == 130; ++attempt)
+        status = run(command("b", "--threads 2"), "timeout --foreground -s INT " + std::to_string(0.5 + 0.5 * attempt) + " ");
     if (status == 130 || status == 124) status = run(command("b"));
     EXPECT_EQ(status, 0) << read(folder_ / "stderr");
     EXPECT_EQ(read(folder_ / "a" / "front.json"), read(folder_ / "b" / "front.json"));

@@ -94,7 +94,7 @@ function scaleOf(p, range) {
 function ticksOf(p, scale) { return p.words ? p.words : p.scale === "log" ? logTicks(scale, 1.6) : scale.ticks(4); }
 
 function drawPartial() {
-  const scores = data.candidates.map(scoreOf).filter(v => v > 0), low = Math.max(.1, (d3.min(scores) || .5) / 1.2), high = Math.min(12, (d3.max(scores) || 2) * 1.2);
+  const scores = data.candidates.map(scoreOf).filter(v => v > 0), low = Math.max(.01, (d3.min(scores) || .5) / 1.2), high = Math.min(12, (d3.max(scores) || 2) * 1.2);
   for (const p of data.parameters) {
     const figureNode = d3.select("#partial").append("figure"), width = 330, height = 230, box = {left: 48, right: width - 8, top: 26, bottom: height - 28};
     const svg = newSvg(figureNode.append("div").attr("class", "chart"), width, height, `${p.name}: candidates by value and by time for the default's error; default ${p.default}, tuned ${p.tuned}`);
@@ -182,7 +182,7 @@ function tellVerdict() {
   if (!data.chosen.reached) lines.push(`No settings reach an error of ${percent(data.goal.value)} within the measured times; tuned.toml holds what comes nearest.`);
   d3.select("#verdict").selectAll("p").data(lines).enter().append("p").text(l => l);
   $("settings").textContent = Object.entries(tuned.settings).map(([k, v]) => `${k} = ${v}`).join("\n") || "# as the plan decides";
-  $("facts").textContent = `${data.width} × ${data.height}, ${data.seeds} seeds, ${data.candidates.length} candidates in ${data.rounds} rounds, ` + (data.iterations ? `${data.iterations} iterations, costs in ${data.unit}` : `${figure(data.budget)} s of tuning`) + `, Pellucid ${data.version}`;
+  $("facts").textContent = `${data.width} × ${data.height}, ${data.seeds} seeds, ${data.candidates.length} candidates in ${data.rounds} round${data.rounds === 1 ? "" : "s"}, ` + (data.iterations ? `${data.iterations} iterations, costs in ${data.unit}` : `${figure(data.budget)} s of tuning`) + `, Pellucid ${data.version}`;
   if (data.reference.remark) { $("remarks").hidden = false; $("remarks").textContent = data.reference.remark; }
 }
 
