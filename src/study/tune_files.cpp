@@ -32,7 +32,7 @@ constexpr int kCurveSteps = 33;
     return d.standard;
 }
 
-/// The model's part of one parameter, as a factor in relmse x cost relative to the default's value.
+/// The model's part of one parameter by its value, as a factor in relmse x cost relative to the default's value.
 [[nodiscard]] Json curveJson(const TuneFindings& f, std::size_t i) {
     Json curve = Json::array();
     const Dimension& d = f.space.dimensions()[i];
@@ -40,7 +40,7 @@ constexpr int kCurveSteps = 33;
     const double standard = f.search.model.part(i, d.coordinateOf(d.standard));
     for (int k = 0; k < kCurveSteps; ++k) {
         const double x = static_cast<double>(k) / (kCurveSteps - 1);
-        curve.push_back({x, std::exp(f.search.model.part(i, x) - standard)});
+        if (const std::string value = d.valueAt(x); value != "auto") curve.push_back({value, std::exp(f.search.model.part(i, x) - standard)});
     }
     return curve;
 }
@@ -54,6 +54,7 @@ constexpr int kCurveSteps = 33;
             row.update({{"low", d.low}, {"high", d.high}, {"scale", d.row->logScale ? "log" : "linear"}});
         else
             row["words"] = d.words;
+        row["automatic"] = d.automatic;
         row["default"] = d.standard;
         row["tuned"] = valueIn(f.search.winner.candidate.set, d);
         const auto worth = std::ranges::find(f.search.worth, std::string(d.row->name), &Worth::name);

@@ -112,10 +112,8 @@ Candidate Search::neighbour(const Candidate& of, double reach) {
         const std::string name(space_.dimensions()[i].row->name);
         const std::string value = space_.dimensions()[i].valueAt(to < 0.0 ? -to : to > 1.0 ? 2.0 - to : to);
         const auto set = std::ranges::find(moved.set, name, &SettingList::value_type::first);
-        if (set != moved.set.end())
-            set->second = value;
-        else
-            moved.set.emplace_back(name, value);
+        if (set != moved.set.end()) moved.set.erase(set);
+        if (value != "auto") moved.set.emplace_back(name, value);
     }
     inTableOrder(moved.set);
     return moved;

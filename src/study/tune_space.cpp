@@ -14,6 +14,9 @@
 namespace pellucid {
 namespace {
 
+constexpr const char* kAutomatic = "auto";
+constexpr double kAutomaticShare = 0.5;  // of the coordinate
+
 [[nodiscard]] bool isWhole(const Parameter& row) { return std::holds_alternative<int Settings::*>(row.member); }
 [[nodiscard]] bool isWord(const Parameter& row) { return std::holds_alternative<std::string Settings::*>(row.member); }
 
@@ -40,7 +43,9 @@ namespace {
     Dimension d;
     d.row = &row;
     d.standard = valueOf(plan.resolved, row.name);
-    const double factor = row.tuning.timesPlan ? std::max(1.0, number(d.standard)) : 1.0;
+    d.automatic = row.automatic && d.standard == "-1";
+    if (d.automatic) d.standard = kAutomatic;
+    const double factor = row.tuning.timesPlan && !d.automatic ? std::max(1.0, number(d.standard)) : 1.0;
     d.low = std::max(row.lower, row.tuning.low * factor);
     d.high = std::min(row.upper, row.tuning.high * factor);
     return d;
@@ -149,7 +154,9 @@ Settings withSettings(Settings settings, const SettingList& list) {
 }
 
 std::string Dimension::valueAt(double coordinate) const {
-    const double x = std::clamp(coordinate, 0.0, 1.0);
+    double x = std::clamp(coordinate, 0.0, 1.0);
+    if (automatic && x < kAutomaticShare) return kAutomatic;
+    if (automatic) x = (x - kAutomaticShare) / (1.0 - kAutomaticShare);
     if (!words.empty())
         return words[std::min(words.size() - 1, static_cast<std::size_t>(x * static_cast<double>(words.size())))];
     double value = row->logScale ? low * std::pow(high / low, x) : std::lerp(low, high, x);
@@ -163,8 +170,10 @@ double Dimension::coordinateOf(const std::string& value) const {
         const auto index = static_cast<double>(found == words.end() ? 0 : found - words.begin());
         return (index + 0.5) / static_cast<double>(words.size());
     }
+    if (automatic && value == kAutomatic) return 0.5 * kAutomaticShare;
     const double v = std::clamp(number(value), low, high);
-    return row->logScale ? std::log(v / low) / std::log(high / low) : (v - low) / (high - low);
+    const double x = row->logScale ? std::log(v / low) / std::log(high / low) : (v - low) / (high - low);
+    return automatic ? kAutomaticShare + (1.0 - kAutomaticShare) * x : x;
 }
 
 bool usesPass(const RenderRecord& plan, ParameterPass pass) {
@@ -190,6 +199,7 @@ SearchSpace::SearchSpace(const std::vector<TuneOver>& over, const Settings& aske
             continue;
         }
         Dimension d = declared(row, plan);
+        if (!named->words.empty()) d.automatic = false;
         if (named->high > 0.0 || !named->words.empty()) {
             d.low = named->low;
             d.high = named->high;
@@ -205,8 +215,10 @@ SearchSpace::SearchSpace(const std::vector<TuneOver>& over, const Settings& aske
 Candidate SearchSpace::at(const std::vector<double>& coordinates, std::string origin) const {
     Candidate c;
     c.origin = std::move(origin);
-    for (std::size_t i = 0; i < dimensions_.size(); ++i)
-        c.set.emplace_back(dimensions_[i].row->name, dimensions_[i].valueAt(coordinates[i]));
+    for (std::size_t i = 0; i < dimensions_.size(); ++i) {
+        std::string value = dimensions_[i].valueAt(coordinates[i]);
+        if (value != kAutomatic) c.set.emplace_back(dimensions_[i].row->name, std::move(value));
+    }
     return c;
 }
 

@@ -29,6 +29,9 @@ struct Dimension {
     double low = 0.0, high = 0.0;
     std::vector<std::string> words;
     std::string standard;  ///< what the plan chose
+    /// The plan chose no number (a radius pixel by pixel, say): the lower half of the coordinate is "auto", the upper half
+    /// the range.
+    bool automatic = false;
 
     /// As --set takes it, with three significant digits.
     [[nodiscard]] std::string valueAt(double coordinate) const;
@@ -45,7 +48,7 @@ public:
     [[nodiscard]] const std::vector<Dimension>& dimensions() const noexcept { return dimensions_; }
     [[nodiscard]] std::size_t size() const noexcept { return dimensions_.size(); }
 
-    /// Departs in every coordinate.
+    /// Departs in every coordinate, those apart that are automatic there.
     [[nodiscard]] Candidate at(const std::vector<double>& coordinates, std::string origin) const;
     /// Of a candidate; the plan's choice where it does not depart.
     [[nodiscard]] std::vector<double> coordinates(const Candidate& candidate) const;

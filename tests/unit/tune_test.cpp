@@ -103,6 +103,16 @@ TEST(TuneSpace, ValuesAndCoordinatesAreInverse) {
     EXPECT_FALSE(space.contains({"", {{"photon.radius", "3"}}}));
 }
 
+TEST(TuneSpace, WhatThePlanDecidesPixelByPixelHasItsPlace) {
+    RenderRecord plan = planOf(true);
+    plan.resolved.causticRadius = -1.0;
+    const SearchSpace space(parseOver("photon.radius=1..4"), Settings{}, plan, false);
+    EXPECT_TRUE(space.at({0.2}, "").set.empty());
+    EXPECT_EQ(space.at({0.75}, "").set, (SettingList{{"photon.radius", "2"}}));
+    EXPECT_EQ(space.at(space.coordinates({"", {}}), "").set, SettingList{});
+    EXPECT_EQ(space.at(space.coordinates({"", {{"photon.radius", "2"}}}), "").set, (SettingList{{"photon.radius", "2"}}));
+}
+
 TEST(TuneSpace, PeersSettingsAreValidAndDropWhatIsLeftOut) {
     for (const bool caustics : {true, false})
         for (const Candidate& peer : peersSettings(planOf(caustics), 65536)) {

@@ -87,11 +87,21 @@ function drawWorth() {
 
 const scoreOf = c => c.relmse_cost_over_default[c.relmse_cost_over_default.length - 1];
 const valueOf = (c, p) => c.settings[p.name] === undefined ? p.default : c.settings[p.name];
+// Where no number stands for what the plan does, "auto" has a place of its own before the range.
 function scaleOf(p, range) {
   if (p.words) return d3.scalePoint().domain(p.words).range(range).padding(.5);
-  return (p.scale === "log" ? d3.scaleLog() : d3.scaleLinear()).domain([p.low, p.high]).range(range).clamp(true);
+  const start = p.automatic ? range[0] + .15 * (range[1] - range[0]) : range[0];
+  const numbers = (p.scale === "log" ? d3.scaleLog() : d3.scaleLinear()).domain([p.low, p.high]).range([start, range[1]]).clamp(true);
+  const scale = v => isNaN(+v) ? range[0] + .05 * (range[1] - range[0]) : numbers(+v);
+  for (const name of ["ticks", "domain", "tickFormat"]) scale[name] = numbers[name];
+  scale.range = () => range; scale.copy = () => scaleOf(p, range);
+  return scale;
 }
-function ticksOf(p, scale) { return p.words ? p.words : p.scale === "log" ? logTicks(scale, 1.6) : scale.ticks(4); }
+function ticksOf(p, scale) {
+  if (p.words) return p.words;
+  const numbers = p.scale === "log" ? logTicks(scale, 1.6) : scale.ticks(4);
+  return p.automatic ? ["auto", ...numbers] : numbers;
+}
 
 function drawPartial() {
   const scores = data.candidates.map(scoreOf).filter(v => v > 0), low = Math.max(.01, (d3.min(scores) || .5) / 1.2), high = Math.min(12, (d3.max(scores) || 2) * 1.2);
@@ -103,12 +113,12 @@ function drawPartial() {
     svg.append("g").attr("class", "grid").append("line").attr("x1", box.left).attr("x2", box.right).attr("y1", y(1)).attr("y2", y(1)).attr("stroke-width", 2);
     svg.append("g").attr("transform", `translate(0,${box.bottom})`).call(d3.axisBottom(x).tickValues(ticksOf(p, x)).tickFormat(v => typeof v === "string" ? v : figure(v)));
     svg.append("g").attr("transform", `translate(${box.left},0)`).call(d3.axisLeft(y).tickValues(logTicks(y, 1.2)).tickFormat(v => figure(v)));
-    const place = v => p.words ? x(v) : x(+v);
+    const place = v => x(v);
     for (const [value, dash] of [[p.default, "4 3"], [p.tuned, ""]]) svg.append("line").attr("stroke", "currentColor").attr("stroke-opacity", .6).attr("stroke-dasharray", dash).attr("x1", place(value)).attr("x2", place(value)).attr("y1", box.top).attr("y2", box.bottom);
     const dots = svg.append("g").selectAll("circle").data(data.candidates).enter().append("circle").attr("r", c => 1.6 + 1.1 * c.relmse_cost_over_default.length).attr("fill", c => scoreOf(c) < 1 ? good : bad).attr("fill-opacity", .65).attr("cx", c => place(valueOf(c, p)) || 0).attr("cy", c => y(scoreOf(c)));
     tipFor(dots, c => `${c.origin}: ${figure(scoreOf(c))} of the default's time\n${listed(c.settings)}`);
     if (p.curve.length) {
-      const shape = d3.line().x(q => box.left + q[0] * (box.right - box.left)).y(q => y(q[1]));
+      const shape = d3.line().x(q => x(q[0])).y(q => y(q[1]));
       svg.append("path").attr("fill", "none").attr("stroke", "currentColor").attr("stroke-width", 2).attr("d", shape(p.curve));
     }
     figureNode.append("figcaption").text(p.help);
@@ -120,7 +130,7 @@ function drawParallel() {
   const svg = newSvg("parallel", width, height, "Parallel coordinates of all candidates; the table below holds the values.");
   const across = i => ps.length < 2 ? width / 2 : 60 + i * (width - 130) / (ps.length - 1);
   const scales = ps.map(p => scaleOf(p, [bottom, top]));
-  const path = settings => d3.line()(ps.map((p, i) => [across(i), scales[i](p.words ? valueOf({settings}, p) : +valueOf({settings}, p))]));
+  const path = settings => d3.line()(ps.map((p, i) => [across(i), scales[i](valueOf({settings}, p))]));
   const hue = d3.scaleLinear().domain([Math.log(.4), 0, Math.log(2.5)]).range([good, "#999999", bad]).clamp(true);
   const sorted = data.candidates.slice().sort((a, b) => scoreOf(b) - scoreOf(a));
   const lines = svg.append("g").selectAll("path").data(sorted).enter().append("path").attr("fill", "none").attr("stroke", c => hue(Math.log(scoreOf(c)))).attr("stroke-opacity", .55).attr("stroke-width", c => .8 + .7 * c.relmse_cost_over_default.length).attr("d", c => path(c.settings));
