@@ -4,6 +4,7 @@
 
 #include <pellucid/base/error.h>
 #include <pellucid/io/plain_file.h>
+#include <pellucid/study/text_table.h>
 #include <pellucid/surface/material.h>
 
 #include "tune_files.h"
@@ -40,6 +41,22 @@ void makeFolders(const std::filesystem::path& folder) {
     return key;
 }
 
+/// What the figures of this session do not deserve to hide.
+void warnOf(const Front& front, const TuneRequest& request, const LogSink& log) {
+    constexpr double kUneven = 1.3;
+    if (front.seeds < 2)
+        logTo(log, LogLevel::Warning,
+              "the budget sufficed for one seed of the finalists: their errors have no intervals; a larger --budget goes on from here");
+    double spread = 1.0;
+    for (const Finalist& f : front.finalists)
+        for (const FrontPoint& p : f.points)
+            if (!p.cost.empty()) spread = std::max(spread, std::ranges::max(p.cost) / std::max(1e-9, std::ranges::min(p.cost)));
+    if (request.iterations == 0 && spread > kUneven)
+        logTo(log, LogLevel::Warning,
+              "the same settings took up to " + figure(spread) + " times as long with another seed: this machine was busy, or --time " +
+                  "is less than one iteration takes; --iterations counts rays instead of seconds");
+}
+
 }  // namespace
 
 TuneOutcome tune(const TuneRequest& asked, const SceneSource& scenes, const Workers& workers, const Progress& progress,
@@ -72,6 +89,7 @@ TuneOutcome tune(const TuneRequest& asked, const SceneSource& scenes, const Work
     const std::optional<Front> front = measureFinalists(request, *found, space, peers, runner, kFinalShare * request.budget);
     if (!front) return {"", true};
 
+    warnOf(*front, request, log);
     TuneFindings findings{request, space, reference, *found, *front, request.goal.value_or(TuneGoal{TuneGoal::Kind::Time, request.time}), {}, ""};
     findings.choice = choose(*front, findings.goal);
     const SettingList& set = front->finalists[findings.choice.finalist].candidate.set;

@@ -129,8 +129,8 @@ std::optional<Front> measureFinalists(const TuneRequest& request, const SearchOu
         for (Finalist& f : front.finalists)
             for (std::size_t i = 0; i < f.points.size(); ++i) {
                 if (!wanted(f, i, k, peers)) continue;
-                // A first seed must be finished for the default and the tuned settings; the rest takes what is left.
-                const bool needed = k == 0 && (f.name == "default" || f.name == "tuned");
+                // Whatever is left, the default and the tuned settings are rendered once for the whole time.
+                const bool needed = i + 1 == f.points.size() && (f.name == "default" || f.name == "tuned");
                 if (!needed && k == 0 && request.iterations == 0 && runner.spent() > limit) continue;
                 runner.setStage("finalists, seed " + std::to_string(k + 1) + ", " + f.name,
                                 request.iterations > 0 ? 0.6 + 0.4 * k / most : std::min(1.0, runner.spent() / request.budget));

@@ -211,7 +211,8 @@ std::optional<SearchOutcome> Search::run() {
         for (const TrialPlan& plan : plansOf(level)) levelSeconds_[static_cast<std::size_t>(level)] += runner_.run(standard.candidate, plan)->spent;
     }
     known_.emplace("default", standard);
-    if (!round(firstField(std::clamp(affordable(), kLeastField, kFirstField)))) return std::nullopt;
+    // The default's own renders may have used the budget up: then there is nothing to search with, and the default stands.
+    if (timeLeft() && !round(firstField(std::clamp(affordable(), kLeastField, kFirstField)))) return std::nullopt;
     const auto more = [this] {
         return request_.iterations > 0 ? rounds_ < request_.iterations : timeLeft() && affordable() >= kLeastField;
     };
