@@ -26,7 +26,7 @@ const std::map<std::string, Method> kMethods{
 
 /// Option texts as typed, until all are known: a --config is read before the first --set, wherever they stand.
 struct TypedText {
-    std::string size, config, layers, crop, sample, method = "photon", methods, times;
+    std::string size, config, layers, crop, sample, method = "photon", methods, times, over, goal;
     std::vector<std::string> set, failAbove;
 };
 
@@ -89,7 +89,11 @@ void addSceneOptions(CLI::App& app, SceneArguments& common, TypedText& typed) {
 void resolve(SceneArguments& common, const TypedText& typed) {
     common.method = kMethods.at(typed.method);
     if (!typed.size.empty()) std::tie(common.width, common.height) = parseSize(typed.size);
-    if (!typed.config.empty()) loadSettings(common.settings, typed.config);
+    if (!typed.config.empty()) {
+        loadSettings(common.settings, typed.config);
+        common.config = typed.config;
+        common.tunedFor = tunedSceneHash(typed.config);
+    }
     for (const std::string& text : typed.set) {
         const auto [key, value] = parseAssignment("--set", text);
         setParameter(common.settings, key, value);
@@ -109,7 +113,8 @@ struct Parser {
     DiffArguments diff;
     CheckArguments check;
     CompareArguments compare;
-    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand, *compareCommand, *checkCommand, *optionsCommand;
+    TuneArguments tune;
+    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand, *compareCommand, *tuneCommand, *checkCommand, *optionsCommand;
 
     Parser() {
         app.require_subcommand(1);
@@ -124,6 +129,7 @@ struct Parser {
         checkCommand = addCheck();
         compareCommand = addCompare();
         optionsCommand = app.add_subcommand("options", "every setting that --set and --config take");
+        tuneCommand = addTune();
     }
 
     CLI::App* addRender() {
@@ -238,6 +244,56 @@ struct Parser {
         return compare;
     }
 
+    CLI::App* addTune() {
+        CLI::App* command = app.add_subcommand("tune", "find the settings that render this scene best in a given time");
+        addPictureOptions(*command, tune.common, typed);
+        command->add_option("-o,--output", tune.folder, "folder for tuned.toml, front.json, report.html and the trials")
+            ->required()
+            ->type_name("DIR");
+        command->add_option("--time", tune.time, "seconds that the renders to tune for are to take")
+            ->required()
+            ->check(CLI::PositiveNumber)
+            ->type_name("S");
+        CLI::Option* budget =
+            command->add_option("--budget", tune.budget, "seconds for the tuning as a whole, the reference included")
+                ->check(CLI::PositiveNumber)
+                ->type_name("S");
+        command
+            ->add_option("--iterations", tune.iterations,
+                         "rounds of the search, in place of --budget: costs are then counted in rays (2 million stand "
+                         "for a second), so that the same seed gives the same front anywhere")
+            ->check(CLI::Range(1, 1000))
+            ->excludes(budget)
+            ->type_name("N");
+        command
+            ->add_option("--over", typed.over,
+                         "what to search, and where (default: what the plan's passes use, in the declared ranges)")
+            ->type_name("KEY[=LOW..HIGH],...");
+        command->add_option("--for", typed.goal, "the point of the front that tuned.toml is to hold (default: --time)")
+            ->type_name("error=E|time=S");
+        command
+            ->add_option("--reference", tune.reference,
+                         "image to measure against; layers variance.* and mask.Y are used. Without it one is made")
+            ->type_name("FILE");
+        command->footer(
+            "The same command goes on after an interruption, and with a larger --budget; another --for picks from what is\n"
+            "measured already.\n"
+            "Examples:\n  pellucid tune scene.glb -o tuning --time 10 --budget 600\n"
+            "  pellucid tune scene.glb -o tuning --time 10 --budget 600 --over cache.error=0.05..0.5,cache.rays\n"
+            "  pellucid tune scene.glb -o tuning --time 10 --budget 600 --for error=0.02\n"
+            "  pellucid render scene.glb --config tuning/tuned.toml --time 10 -o out.exr");
+        return command;
+    }
+
+    [[nodiscard]] Arguments resultOfTune() {
+        resolve(tune.common, typed);
+        if (tune.budget == 0.0 && tune.iterations == 0)
+            throw Error(ErrorKind::Usage, "how long to tune is missing", "tune", "give --budget S, or --iterations N");
+        if (!typed.over.empty()) tune.over = parseOver(typed.over);
+        if (!typed.goal.empty()) tune.goal = parseGoal(typed.goal);
+        return tune;
+    }
+
     CLI::App* addCheck() {
         CLI::App* command = app.add_subcommand("check", "the numerical suite: closed forms, extremes, invariants");
         command->add_option("--filter", check.filter, "only cases with this in their name")->type_name("NAME");
@@ -300,6 +356,7 @@ struct Parser {
         }
         if (optionsCommand->parsed()) return TextArguments{settingsMarkdown()};
         if (compareCommand->parsed()) return resultOfCompare();
+        if (tuneCommand->parsed()) return resultOfTune();
         if (!typed.crop.empty()) diff.crop = parseCrop(typed.crop);
         for (const std::string& text : typed.failAbove) diff.failAbove.push_back(parseGate(text));
         if (!diff.map.empty()) requireExtension("--map", diff.map, kMapExtensions);
@@ -347,6 +404,7 @@ Arguments parseArguments(int count, const char* const* values) {
     }
     Arguments arguments = parser.result();
     if (auto* const compare = std::get_if<CompareArguments>(&arguments)) compare->command = asTyped(count, values);
+    if (auto* const tune = std::get_if<TuneArguments>(&arguments)) tune->command = asTyped(count, values);
     return arguments;
 }
 

@@ -12,6 +12,7 @@
 #include <pellucid/render/render.h>
 #include <pellucid/study/compare.h>
 #include <pellucid/study/metrics.h>
+#include <pellucid/study/tune.h>
 
 namespace pellucid {
 
@@ -26,6 +27,7 @@ struct SceneArguments {
     Method method = Method::Photon;
     Budget budget;
     Settings settings;  ///< defaults, then --config, then each --set in turn
+    std::string config, tunedFor;  ///< the --config file, and the hash of the scene it was tuned for
     bool quiet = false;
 };
 
@@ -75,6 +77,16 @@ struct CompareArguments {
     std::string command;      ///< as typed, for the report
 };
 
+struct TuneArguments {
+    SceneArguments common;    ///< its method and budget are not used
+    double time = 0.0, budget = 0.0;
+    int iterations = 0;       ///< in place of the budget when above 0
+    std::vector<TuneOver> over;
+    std::optional<TuneGoal> goal;
+    std::string folder, reference;
+    std::string command;      ///< as typed, for the report
+};
+
 struct CheckArguments {
     std::string filter;
     bool json = false, markdown = false, quick = false, quiet = false;
@@ -89,8 +101,8 @@ struct TextArguments {
     std::string text;
 };
 
-using Arguments = std::variant<RenderArguments, PlanArguments, InfoArguments, DiffArguments, CompareArguments, CheckArguments,
-                               TextArguments>;
+using Arguments = std::variant<RenderArguments, PlanArguments, InfoArguments, DiffArguments, CompareArguments, TuneArguments,
+                               CheckArguments, TextArguments>;
 
 /// Throws Error{Usage}; Error{BadInput} for what is wrong inside of the --config file.
 [[nodiscard]] Arguments parseArguments(int count, const char* const* values);

@@ -18,5 +18,6 @@ using Clock = std::chrono::steady_clock;
 [[nodiscard]] int runDiff(const DiffArguments& arguments);
 [[nodiscard]] int runCheck(const CheckArguments& arguments);
 [[nodiscard]] int runCompare(const CompareArguments& arguments);
+[[nodiscard]] int runTune(const TuneArguments& arguments);
 
 }  // namespace pellucid

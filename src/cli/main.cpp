@@ -24,6 +24,7 @@ struct Run {
     int operator()(const DiffArguments& arguments) const { return runDiff(arguments); }
     int operator()(const CheckArguments& arguments) const { return runCheck(arguments); }
     int operator()(const CompareArguments& arguments) const { return runCompare(arguments); }
+    int operator()(const TuneArguments& arguments) const { return runTune(arguments); }
     int operator()(const TextArguments& arguments) const {
         printResult(arguments.text);
         return 0;

@@ -184,7 +184,7 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     }
     findBlindSpots(plan, scene, request);
     const Budget& b = request.budget;
-    if (!b.seconds && !b.samples) {
+    if (!b.seconds && !b.samples && !b.rays) {
         plan.timeCap = kDefaultTimeCap;
         decide(plan, "budget", fmt::format("relative error {}", b.error.value_or(0.05)), fmt::format("at most {} seconds", kDefaultTimeCap));
     }

@@ -1,5 +1,6 @@
 #include <pellucid/render/render.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -40,16 +41,17 @@ constexpr double kDefaultError = 0.05;
 
 [[nodiscard]] double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Adds wall time to a stage while it lives.
+/// Adds wall time to a stage while it lives, `scale` times.
 class StageTimer {
 public:
-    explicit StageTimer(StageRecord& stage) : stage_(stage), start_(Clock::now()) {}
-    ~StageTimer() { stage_.seconds += secondsSince(start_); }
+    explicit StageTimer(StageRecord& stage, double scale = 1.0) : stage_(stage), scale_(scale), start_(Clock::now()) {}
+    ~StageTimer() { stage_.seconds += scale_ * secondsSince(start_); }
     StageTimer(const StageTimer&) = delete;
     StageTimer& operator=(const StageTimer&) = delete;
 
 private:
     StageRecord& stage_;
+    double scale_;
     Clock::time_point start_;
 };
 
@@ -144,8 +146,15 @@ private:
     void makeMaps();
     [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, FirstHit& first) const;
     [[nodiscard]] bool finished() const;
+    void keepWindows();
+    [[nodiscard]] std::uint64_t ofWholeImage(std::uint64_t rays) const;
+    [[nodiscard]] std::uint64_t raysSoFar() const;
     [[nodiscard]] bool outOfTime() const { return request_.budget.seconds && elapsed() > kCacheShare * *request_.budget.seconds; }
-    [[nodiscard]] double elapsed() const { return secondsSince(start_) + request_.budget.startedSecondsAgo; }
+    /// With what the passes over pixels would have taken for the whole image.
+    [[nodiscard]] double elapsed() const {
+        const double overPixels = cacheStage_.seconds + eyeStage_.seconds;
+        return secondsSince(start_) + request_.budget.startedSecondsAgo + overPixels * (1.0 - 1.0 / windowScale_);
+    }
     [[nodiscard]] std::size_t pixelIndex(int x, int y) const noexcept {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x);
     }
@@ -181,6 +190,8 @@ private:
     std::unique_ptr<RadianceMap> globalMap_;
     std::unique_ptr<IrradianceCache> cache_;
     double radiusScale_ = 1.0;         ///< squared, of the caustic kernel
+    std::vector<bool> inWindow_;       ///< by pixel; empty: all are
+    double windowScale_ = 1.0;         ///< pixels of the image / pixels in windows
     std::uint32_t iteration_ = 0, generation_ = 0;
     double raysOfGeneration_ = 0.0, raysSince_ = 0.0, secondsOfGeneration_ = 0.0;
     double lastSave_ = 0.0;
@@ -200,6 +211,30 @@ void Renderer::prepare() {
     pilotStage_.photonsEmitted += plan_.pilotPhotons;
     if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), KernelRadiusOptions{});
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
+    if (!request_.windows.empty()) keepWindows();
+}
+
+/// After the plan, which is that of the whole image.
+void Renderer::keepWindows() {
+    inWindow_.assign(film_.pixels(), false);
+    for (const PixelWindow& w : request_.windows)
+        for (int y = std::max(0, w.y0); y < std::min(w.y1, camera_.height()); ++y)
+            for (int x = std::max(0, w.x0); x < std::min(w.x1, camera_.width()); ++x)
+                inWindow_[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x)] = true;
+    const auto inside = std::count(inWindow_.begin(), inWindow_.end(), true);
+    windowScale_ = static_cast<double>(film_.pixels()) / static_cast<double>(std::max<std::ptrdiff_t>(1, inside));
+    for (std::size_t i = 0; i < survey_.points.size(); ++i)
+        if (!inWindow_[i]) survey_.points[i].valid = false;
+}
+
+std::uint64_t Renderer::ofWholeImage(std::uint64_t rays) const {
+    return static_cast<std::uint64_t>(std::llround(static_cast<double>(rays) * windowScale_));
+}
+
+std::uint64_t Renderer::raysSoFar() const {
+    std::uint64_t rays = 0;
+    for (const StageRecord* s : {&pilotStage_, &globalStage_, &cacheStage_, &causticStage_, &lightStage_, &eyeStage_}) rays += s->rays;
+    return rays;
 }
 
 bool Renderer::generationDue() const {
@@ -247,11 +282,11 @@ void Renderer::renewGeneration() {
     const CausticMap none{PhotonList{}};
     if (plan_.causticMap) context_.maps.caustic = &none;
     {
-        const StageTimer timer(cacheStage_);
+        const StageTimer timer(cacheStage_, windowScale_);
         CacheBuild build = buildCache(context_, survey_, camera_.width(), plan_, size, hashCombine(request_.seed, kCachePass + generation_),
                                       workers_, [this] { return progress_.stopAsked() || outOfTime(); });
         cache_ = std::move(build.cache);
-        cacheStage_.rays += build.rays;
+        cacheStage_.rays += ofWholeImage(build.rays);
         cacheStage_.records += cache_->records().size();
     }
     context_.maps.caustic = causticMap_.get();
@@ -328,7 +363,7 @@ LayeredRadiance Renderer::samplePixel(Walk& walk, int x, int y, FirstHit& first)
 }
 
 void Renderer::eyePass() {
-    const StageTimer timer(eyeStage_);
+    const StageTimer timer(eyeStage_, windowScale_);
     const int tilesX = (camera_.width() + kTile - 1) / kTile, tilesY = (camera_.height() + kTile - 1) / kTile;
     std::vector<std::uint64_t> rays(static_cast<std::size_t>(tilesX * tilesY), 0);
     workers_.forEach(rays.size(), 1, [&](std::size_t tile) {
@@ -336,6 +371,7 @@ void Renderer::eyePass() {
         const int x0 = static_cast<int>(tile) % tilesX * kTile, y0 = static_cast<int>(tile) / tilesX * kTile;
         for (int y = y0; y < std::min(y0 + kTile, camera_.height()); ++y)
             for (int x = x0; x < std::min(x0 + kTile, camera_.width()); ++x) {
+                if (!inWindow_.empty() && !inWindow_[pixelIndex(x, y)]) continue;
                 FirstHit first;
                 const LayeredRadiance radiance = samplePixel(walk, x, y, first);
                 film_.add(pixelIndex(x, y), film_.samples(), radiance, first);
@@ -343,7 +379,7 @@ void Renderer::eyePass() {
         rays[tile] = walk.rays();
     });
     film_.countSamples(1);
-    const std::uint64_t total = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    const std::uint64_t total = ofWholeImage(std::accumulate(rays.begin(), rays.end(), std::uint64_t{0}));
     eyeStage_.rays += total;
     raysSince_ += static_cast<double>(total);
 }
@@ -353,7 +389,8 @@ double Renderer::fractionDone() const {
     double fraction = 0.0;
     if (b.samples) fraction = std::max(fraction, static_cast<double>(film_.samples()) / std::max<std::uint32_t>(1, *b.samples));
     if (b.seconds) fraction = std::max(fraction, elapsed() / std::max(1e-3, *b.seconds));
-    if (!b.samples && !b.seconds) {
+    if (b.rays) fraction = std::max(fraction, static_cast<double>(raysSoFar()) / static_cast<double>(std::max<std::uint64_t>(1, *b.rays)));
+    if (!b.samples && !b.seconds && !b.rays) {
         const double target = b.error.value_or(kDefaultError), now = film_.relativeError();
         fraction = std::max(now > 0.0 ? std::pow(target / now, 2.0) : 1.0, elapsed() / plan_.timeCap);
     }
@@ -364,9 +401,13 @@ bool Renderer::finished() const {
     const Budget& b = request_.budget;
     if (b.samples && film_.samples() >= *b.samples) return true;
     if (iteration_ == 0) return false;
-    const double perIteration = (secondsSince(start_) - pilotStage_.seconds - globalStage_.seconds - cacheStage_.seconds) / iteration_;
+    const double perIteration = (elapsed() - b.startedSecondsAgo - pilotStage_.seconds - globalStage_.seconds - cacheStage_.seconds) / iteration_;
     if (b.seconds && elapsed() + 0.5 * perIteration >= *b.seconds) return true;
-    const bool errorGiven = b.error || (!b.seconds && !b.samples);
+    if (b.rays) {
+        const std::uint64_t once = pilotStage_.rays + globalStage_.rays + cacheStage_.rays, all = raysSoFar();
+        if (all + (all - once) / (2 * iteration_) >= *b.rays) return true;
+    }
+    const bool errorGiven = b.error || (!b.seconds && !b.samples && !b.rays);
     if (errorGiven && film_.samples() >= 4 && film_.relativeError() <= b.error.value_or(kDefaultError)) return true;
     return plan_.timeCap > 0.0 && elapsed() >= plan_.timeCap;
 }
@@ -423,6 +464,8 @@ CheckpointKey Renderer::checkpointKey() const {
     std::string key = scene_.hash() + "|" + std::to_string(static_cast<int>(request_.method)) + "|" + std::to_string(request_.seed) + "|" +
                       request_.camera + "|" + std::to_string(camera_.width()) + "x" + std::to_string(camera_.height());
     for (const auto& [name, value] : settingsAsText(request_.settings)) key += "|" + name + "=" + value;
+    for (const PixelWindow& w : request_.windows)
+        for (const int side : {w.x0, w.y0, w.x1, w.y1}) key += "|" + std::to_string(side);
     return {key};
 }
 

@@ -23,33 +23,34 @@ constexpr auto kParameters = std::to_array<Parameter>({
     {"path.max_depth", &Settings::maxDepth, 0, 1e6, false, true, "", "vertices",
      "surface vertices of the longest path; 0: no limit. A limit loses light"},
     {"surface.cast_roughness", &Settings::castRoughness, 0, 1, false, false, "", "roughness",
-     "mirrors and glass up to this roughness cast caustics by photons; rougher ones are path-traced"},
+     "mirrors and glass up to this roughness cast caustics by photons; rougher ones are path-traced", ParameterPass::CausticMap, {0.1, 0.6, false, 0.1}},
     {"photon.caustic", &Settings::causticPhotons, 0, kBillion, true, true, "", "paths",
-     "photon paths an iteration for the caustic map"},
+     "photon paths an iteration for the caustic map", ParameterPass::CausticMap, {0.1, 8, true}},
     {"photon.global", &Settings::globalPhotons, 0, kBillion, true, true, "", "paths",
-     "photon paths a generation of the cache, for the global map"},
+     "photon paths a generation of the cache, for the global map", ParameterPass::GlobalMap, {0.1, 8, true}},
     {"photon.radius", &Settings::causticRadius, 0.01, 1000, true, true, "", "pixels",
-     "first radius of the caustic kernel, in pixel footprints. Larger: smoother and more biased"},
+     "first radius of the caustic kernel, in pixel footprints. Larger: smoother and more biased", ParameterPass::CausticMap, {0.5, 10}},
     {"photon.alpha", &Settings::alpha, 0.01, 1, false, false, "", "",
-     "reduction of the radius, r^2 (i + alpha)/(i + 1); 1: the radius stays and so does its bias"},
+     "reduction of the radius, r^2 (i + alpha)/(i + 1); 1: the radius stays and so does its bias", ParameterPass::CausticMap, {0.4, 1}},
     {"photon.guiding", &Settings::guiding, 0, 0, true, false, "auto|on|off", "",
-     "emission of photons guided towards what the image uses"},
+     "emission of photons guided towards what the image uses", ParameterPass::CausticMap},
     {"photon.caustic_map", &Settings::causticMap, 0, 0, true, false, "auto|on|off", "",
      "caustics by photon map, or left to path tracing"},
     {"cache.mode", &Settings::cache, 0, 0, true, false, "auto|on|off", "",
      "indirect diffuse light by irradiance cache, or traced at every pixel"},
     {"cache.error", &Settings::cacheError, 0.001, 10, true, true, "", "",
-     "error that a record may have before a new one is made. Larger: fewer records and more bias"},
-    {"cache.rays", &Settings::gatherRays, 16, 1e6, true, true, "", "rays", "gather rays a record"},
+     "error that a record may have before a new one is made. Larger: fewer records and more bias", ParameterPass::Cache, {0.05, 1}},
+    {"cache.rays", &Settings::gatherRays, 16, 1e6, true, true, "", "rays", "gather rays a record", ParameterPass::Cache, {64, 4096}},
     {"cache.min_spacing", &Settings::minSpacing, 0, 1000, true, true, "", "pixels",
-     "least radius of a record, in pixel footprints"},
+     "least radius of a record, in pixel footprints", ParameterPass::Cache, {0.5, 16}},
     {"cache.max_spacing", &Settings::maxSpacing, 0.1, 1e6, true, true, "", "pixels",
-     "largest radius of a record, in pixel footprints"},
+     "largest radius of a record, in pixel footprints", ParameterPass::Cache, {5, 200}},
     {"camera.aperture", &Settings::aperture, 0, 1e6, false, true, "", "m", "diameter of the lens; 0: a pinhole"},
     {"camera.focus", &Settings::focus, 1e-6, 1e9, false, true, "", "m", "distance to the plane in focus"},
 });
 
 constexpr std::string_view kAutomaticWord = "auto";
+constexpr std::string_view kTunedTable = "tuned.";
 
 [[nodiscard]] std::string shortest(double value) {
     std::array<char, 32> text{};
@@ -143,6 +144,7 @@ void setParameter(Settings& settings, std::string_view name, std::string_view va
 
 void loadSettings(Settings& settings, const std::string& file) {
     for (const SettingsFileEntry& entry : readSettingsFile(file)) {
+        if (entry.key.starts_with(kTunedTable)) continue;
         try {
             setParameter(settings, entry.key, entry.value);
         } catch (const Error& error) {
@@ -150,6 +152,12 @@ void loadSettings(Settings& settings, const std::string& file) {
                         error.mend());
         }
     }
+}
+
+std::string tunedSceneHash(const std::string& file) {
+    for (const SettingsFileEntry& entry : readSettingsFile(file))
+        if (entry.key == std::string(kTunedTable) + "scene_hash") return entry.value;
+    return "";
 }
 
 std::vector<std::pair<std::string, std::string>> settingsAsText(const Settings& settings) {

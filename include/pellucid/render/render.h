@@ -27,7 +27,13 @@ struct Budget {
     std::optional<double> seconds;          ///< wall time, with everything from `startedSecondsAgo` on
     std::optional<std::uint32_t> samples;   ///< per pixel
     std::optional<double> error;            ///< relative error of the image, as estimated
+    std::optional<std::uint64_t> rays;      ///< of all passes together: a limit that every machine reaches alike
     double startedSecondsAgo = 0.0;         ///< what loading has taken already
+};
+
+/// A part of the image, half open, in pixels from the upper left corner.
+struct PixelWindow {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
 struct RenderRequest {
@@ -40,6 +46,9 @@ struct RenderRequest {
     std::vector<std::string> layers;        ///< beyond the four that are always there: albedo, normal, depth, variance, records, radius, ... ; "all"
     std::filesystem::path checkpoint;       ///< empty: none
     bool resume = false;
+    /// Only these pixels are rendered, the rest stays black; empty: all. Plan and photons are those of the whole image, and
+    /// all costs, in the budget and in the record, are scaled up to it: a cheap look at what the whole image would be.
+    std::vector<PixelWindow> windows;
 };
 
 struct StageRecord {

@@ -38,6 +38,16 @@ struct Settings {
     double focus = 1.0;                     ///< camera.focus: in metres
 };
 
+/// The pass that a parameter belongs to: where the plan leaves the pass out, the parameter does nothing.
+enum class ParameterPass { Any, CausticMap, GlobalMap, Cache };
+
+/// Where the tuner looks for a better value. Both 0: only when it is told where.
+struct TuningRange {
+    double low = 0.0, high = 0.0;
+    bool timesPlan = false;                 ///< the range is in multiples of what the plan chose
+    double step = 0.0;                      ///< where each value costs a scene of its own; 0: any value
+};
+
 /// One row of the table.
 struct Parameter {
     std::string_view name;                  ///< as --set takes it, e.g. "cache.error"
@@ -47,6 +57,8 @@ struct Parameter {
     bool logScale;                          ///< how the tuner steps through it
     std::string_view choices;               ///< words, separated by '|'
     std::string_view unit, help;
+    ParameterPass pass = ParameterPass::Any;
+    TuningRange tuning{};
 };
 
 [[nodiscard]] std::span<const Parameter> parameters() noexcept;
@@ -54,8 +66,12 @@ struct Parameter {
 /// "name", "value" as typed. Throws Error{Usage} with the nearest name, or the range.
 void setParameter(Settings& settings, std::string_view name, std::string_view value);
 
-/// A TOML file of `section.key = value`; unknown names are errors that name file and line.
+/// A TOML file of `section.key = value`; unknown names are errors that name file and line. The table [tuned], in which the
+/// tuner says what it found and where, sets nothing.
 void loadSettings(Settings& settings, const std::string& file);
+
+/// Hash of the scene that a file of the tuner is for; empty for any other file.
+[[nodiscard]] std::string tunedSceneHash(const std::string& file);
 
 /// All parameters as (name, value) in the table's order.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> settingsAsText(const Settings& settings);

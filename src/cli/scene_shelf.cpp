@@ -1,0 +1,24 @@
+#include "scene_shelf.h"
+
+#include <chrono>
+#include <utility>
+
+#include "scene_loading.h"
+
+namespace pellucid {
+
+LoadedScene SceneShelf::scene(const Settings& settings) {
+    auto found = shelf_.find(settings.castRoughness);
+    if (found == shelf_.end()) {
+        SceneArguments arguments = arguments_;
+        arguments.settings = settings;
+        const auto start = std::chrono::steady_clock::now();
+        // The file's warnings are the same each time: they are told once.
+        auto loaded = loadScene(arguments, true, workers_, shelf_.empty() ? log_ : LogSink{});
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        found = shelf_.emplace(settings.castRoughness, Entry{std::move(loaded), seconds}).first;
+    }
+    return {*found->second.scene, found->second.seconds};
+}
+
+}  // namespace pellucid
