@@ -112,6 +112,8 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
         plan.blindSpots.push_back(which + "path tracing sees none of their caustics (E .. D S+ L)");
     if (request.method == Method::Reference)
         plan.blindSpots.push_back(which + "caustics that are themselves seen through glass or in a mirror (E S+ D S+ L), and light that a caustic scatters on, are missing");
+    if (request.method == Method::Bdpt)
+        plan.blindSpots.push_back(which + "bidirectional path tracing sees none of their caustics behind perfect mirrors or smooth glass (E S+ D S+ L)");
     if (request.method == Method::Photon && !plan.causticMap) plan.blindSpots.push_back(which + "the caustic map is off and path tracing sees none of it");
 }
 
@@ -146,12 +148,14 @@ Survey survey(const TransportContext& context, const Camera& camera, std::uint64
 }
 
 Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen, const Workers& workers) {
-    (void)camera;
     Plan plan;
     plan.alpha = static_cast<float>(request.settings.alpha);
     if (request.method == Method::Photon) {
         planCaustics(plan, scene, request, seen, workers);
         planIndirect(plan, request, seen);
+    } else if (request.method == Method::Bdpt) {
+        decide(plan, "light paths", fmt::format("{} a pass", camera.width() * camera.height()),
+               "one for each eye path: connected to it vertex by vertex, and splatted on the whole image");
     } else if (request.method != Method::Path) {
         if ((scene.lobeKinds() & kSpecular) == kNoLobe) {
             decide(plan, "light tracing", "off", "no material casts caustics");

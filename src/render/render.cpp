@@ -1,5 +1,6 @@
 #include <pellucid/render/render.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -7,6 +8,7 @@
 #include <pellucid/base/error.h>
 #include <pellucid/render/film.h>
 #include <pellucid/render/plan.h>
+#include <pellucid/transport/bidirectional.h>
 #include <pellucid/transport/caustic_map.h>
 #include <pellucid/transport/kernel_radius.h>
 #include <pellucid/transport/photon_trace.h>
@@ -22,7 +24,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kTile = 16;
-constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, kLightPass = 3ULL << 40U, kCachePass = 4ULL << 40U;
+constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, kLightPass = 3ULL << 40U, kCachePass = 4ULL << 40U,
+                        kBidirectionalPass = 5ULL << 40U;
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
 constexpr double kGenerationShare = 1.5;
 /// Ward's a falls from generation to generation by this power of their number, so that the cache's bias vanishes.
@@ -96,6 +99,10 @@ private:
     void causticPass();
     void lightPass();
     void eyePass();
+    void bidirectionalPass();
+    template <class Body>
+    void forTiles(const Body& body) const;
+    [[nodiscard]] std::size_t tiles() const;
     [[nodiscard]] bool finished() const;
     [[nodiscard]] double elapsed() const { return secondsSince(start_) + request_.budget.startedSecondsAgo; }
     [[nodiscard]] RenderRecord record() const;
@@ -138,7 +145,9 @@ private:
 
 void Renderer::prepare() {
     const StageTimer timer(pilotStage_);
-    if (request_.method != Method::Path) {
+    const auto& layers = request_.layers;
+    if (std::find(layers.begin(), layers.end(), "classes") != layers.end()) film_.keepStrings(scene_.lobeKinds());
+    if (request_.method != Method::Path && request_.method != Method::Bdpt) {
         survey_ = survey(context_, camera_, request_.seed, workers_);
         pilotStage_.rays += survey_.rays;
     }
@@ -153,7 +162,8 @@ void Renderer::iterate() {
     if (plan_.cache && (iteration_ == 0 || raysSince_ > kGenerationShare * raysOfGeneration_)) renewGeneration();
     if (plan_.causticMap) causticPass();
     if (plan_.lightPass) lightPass();
-    if (request_.method != Method::Light) eyePass();
+    if (request_.method == Method::Bdpt) bidirectionalPass();
+    else if (request_.method != Method::Light) eyePass();
     else film_.countSamples(1);
 }
 
@@ -225,30 +235,77 @@ void Renderer::lightPass() {
     learn(pass.useful);
 }
 
+std::size_t Renderer::tiles() const {
+    return static_cast<std::size_t>((camera_.width() + kTile - 1) / kTile) * static_cast<std::size_t>((camera_.height() + kTile - 1) / kTile);
+}
+
+/// Calls body(tile, pixels of the tile as (index, film position of its corner) callback) in parallel.
+template <class Body>
+void Renderer::forTiles(const Body& body) const {
+    const int tilesX = (camera_.width() + kTile - 1) / kTile;
+    workers_.forEach(tiles(), 1, [&](std::size_t tile) {
+        const int x0 = static_cast<int>(tile) % tilesX * kTile, y0 = static_cast<int>(tile) / tilesX * kTile;
+        body(tile, [&](const auto& visit) {
+            for (int y = y0; y < std::min(y0 + kTile, camera_.height()); ++y)
+                for (int x = x0; x < std::min(x0 + kTile, camera_.width()); ++x)
+                    visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x),
+                          glm::vec2(static_cast<float>(x), static_cast<float>(y)));
+        });
+    });
+}
+
 void Renderer::eyePass() {
     const StageTimer timer(eyeStage_);
-    const int tilesX = (camera_.width() + kTile - 1) / kTile, tilesY = (camera_.height() + kTile - 1) / kTile;
-    std::vector<std::uint64_t> rays(static_cast<std::size_t>(tilesX * tilesY), 0);
-    workers_.forEach(rays.size(), 1, [&](std::size_t tile) {
+    std::vector<std::uint64_t> rays(tiles(), 0);
+    forTiles([&](std::size_t tile, const auto& forPixels) {
         Walk walk(context_);
-        const int x0 = static_cast<int>(tile) % tilesX * kTile, y0 = static_cast<int>(tile) / tilesX * kTile;
-        for (int y = y0; y < std::min(y0 + kTile, camera_.height()); ++y)
-            for (int x = x0; x < std::min(x0 + kTile, camera_.width()); ++x) {
-                const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x);
-                Sampler sampler(request_.seed, pixel, film_.samples());
-                const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
-                const CameraRay ray = camera_.ray(glm::vec2(static_cast<float>(x), static_cast<float>(y)) + jitter, lens);
-                FirstHit first;
-                const LayeredRadiance radiance =
-                    walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), false, kernelFootprints(x, y)}, sampler, &first);
-                film_.add(pixel, film_.samples(), radiance, first);
-            }
+        StringSums strings;
+        forPixels([&](std::size_t pixel, const glm::vec2& corner) {
+            Sampler sampler(request_.seed, pixel, film_.samples());
+            const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
+            const CameraRay ray = camera_.ray(corner + jitter, lens);
+            FirstHit first;
+            strings.clear();
+            const LayeredRadiance radiance =
+                walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F),
+                              kernelFootprints(static_cast<int>(corner.x), static_cast<int>(corner.y))}, sampler, &first,
+                             film_.keepsStrings() ? &strings : nullptr);
+            film_.add(pixel, film_.samples(), radiance, first);
+        });
         rays[tile] = walk.rays();
     });
     film_.countSamples(1);
     const std::uint64_t total = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
     eyeStage_.rays += total;
     raysSince_ += static_cast<double>(total);
+}
+
+/// An eye path and a light path for every pixel. Splats wait in their tile and are added in the order of the tiles.
+void Renderer::bidirectionalPass() {
+    const StageTimer timer(eyeStage_);
+    std::vector<std::uint64_t> rays(tiles(), 0);
+    std::vector<std::vector<LightSplat>> splats(tiles());
+    forTiles([&](std::size_t tile, const auto& forPixels) {
+        Bidirectional paths(scene_, camera_, context_.options, static_cast<std::uint32_t>(film_.pixels()));
+        StringSums strings;
+        forPixels([&](std::size_t pixel, const glm::vec2& corner) {
+            Sampler eye(request_.seed, pixel, film_.samples());
+            Sampler light(request_.seed, kBidirectionalPass + film_.samples(), static_cast<std::uint32_t>(pixel));
+            const glm::vec2 jitter = eye.next2D(), lens = eye.next2D();
+            FirstHit first;
+            strings.clear();
+            const LayeredRadiance radiance =
+                paths.sample(camera_.ray(corner + jitter, lens).ray, eye, light, splats[tile], &first, film_.keepsStrings() ? &strings : nullptr);
+            film_.add(pixel, film_.samples(), radiance, first);
+        });
+        rays[tile] = paths.rays();
+    });
+    std::vector<LightSplat> all;
+    for (const auto& s : splats) all.insert(all.end(), s.begin(), s.end());
+    film_.addSplats(all, film_.samples());
+    film_.countSamples(1);
+    eyeStage_.rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    eyeStage_.photonsEmitted += film_.pixels();
 }
 
 double Renderer::fractionDone() const {

@@ -73,6 +73,8 @@ std::string methodName(Method method) {
             return "light";
         case Method::Reference:
             return "reference";
+        case Method::Bdpt:
+            return "bdpt";
     }
     return "photon";
 }

@@ -36,6 +36,7 @@ void Bsdf::add(const Lobe& lobe, const glm::vec3& wo) noexcept {
     const glm::vec3 local = frame_.toLocal(wo);
     visitModel(lobe, [&](const auto& model) { added.probability = lobe.weight * estimateAlbedo(model, local); });
     kinds_ = kinds_ | lobe.kind;
+    connects_ = connects_ || !lobe.delta;
 }
 
 float Bsdf::totalProbability(LobeKinds kinds) const noexcept {

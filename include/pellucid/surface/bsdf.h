@@ -141,6 +141,8 @@ public:
                                                    LobeKinds kinds, TransportMode mode) const noexcept;
 
     [[nodiscard]] LobeKinds kinds() const noexcept { return kinds_; }
+    /// Whether some lobe has a value for a given pair of directions: not all of them are delta lobes.
+    [[nodiscard]] bool connects() const noexcept { return connects_; }
     /// The diffuse lobe scaled by its weight; reflectance 0 when there is none.
     [[nodiscard]] const DiffuseLobe& diffuse() const noexcept { return diffuse_; }
     /// Estimated directional albedo for wo of the lobes in `kinds` (a guide for roulette, not exact).
@@ -171,6 +173,7 @@ private:
     std::array<Lobe, kMaxLobes> lobes_;
     int count_ = 0;
     LobeKinds kinds_ = kNoLobe;
+    bool connects_ = false;
     bool backSide_, bordersVolume_;
 };
 

@@ -8,6 +8,7 @@
 
 #include <pellucid/base/parallel.h>
 #include <pellucid/scene/scene.h>
+#include <pellucid/transport/path_classes.h>
 #include <pellucid/transport/photon_trace.h>
 
 namespace pellucid {
@@ -15,6 +16,7 @@ namespace pellucid {
 struct LightSplat {
     std::uint32_t pixel = 0;
     Rgb radiance{0.0F};       ///< already divided by the number of paths of the pass
+    PathString path;          ///< from the eye
 };
 
 struct LightPass {

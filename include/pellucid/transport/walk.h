@@ -61,7 +61,6 @@ struct WalkRay {
     Ray ray;
     float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;
     Rgb absorption{0.0F};             ///< of the medium, per scene unit
-    bool mediumKnown = false;         ///< false: taken from the first surface that is hit from inside
     float kernelFootprints = 1.0F;    ///< radius of the caustic kernel, in pixel footprints
 };
 
@@ -69,8 +68,10 @@ class Walk {
 public:
     explicit Walk(const TransportContext& context) noexcept : context_(context) {}
 
-    /// Radiance along a camera ray, by class. `dimension`s of the sampler from 2 on are used, 8 a vertex.
-    [[nodiscard]] LayeredRadiance fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first = nullptr) noexcept;
+    /// Radiance along a camera ray, by class. `dimension`s of the sampler from 2 on are used, 8 a vertex. `strings`
+    /// receives the same radiance by path string.
+    [[nodiscard]] LayeredRadiance fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first = nullptr,
+                                          StringSums* strings = nullptr) noexcept;
 
     /// Radiance that arrives at a D vertex along a gather ray, without direct light and without what the caustic map holds.
     /// `distance` receives the length to the first surface (infinity: none).
