@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include <pellucid/base/error.h>
 #include <pellucid/render/film.h>
@@ -13,6 +14,7 @@
 #include <pellucid/transport/kernel_radius.h>
 #include <pellucid/transport/photon_trace.h>
 #include <pellucid/transport/radiance_map.h>
+#include <pellucid/transport/texel_irradiance.h>
 
 #include "cache_builder.h"
 #include "checkpoint.h"
@@ -53,10 +55,18 @@ private:
 [[nodiscard]] TransportOptions transportOptions(const RenderRequest& request) {
     TransportOptions o;
     o.powerHeuristic = request.settings.misHeuristic == "power";
+    const auto& [directions, lights] = std::tie(request.settings.directions, request.settings.lightStrategy);
+    o.directions = directions == "uniform" ? Directions::Uniform : directions == "cosine" ? Directions::Cosine : Directions::Bsdf;
+    o.lights = lights == "none" ? LightStrategy::Chance : lights == "nee" ? LightStrategy::NextEvent : LightStrategy::Both;
     o.rouletteThreshold = static_cast<float>(request.settings.rouletteThreshold);
     o.maxDepth = request.settings.maxDepth;
-    o.leaveCaustics = request.method == Method::Reference;
     return o;
+}
+
+[[nodiscard]] SamplerKind samplerKind(const std::string& name) {
+    if (name == "independent") return SamplerKind::Independent;
+    if (name == "stratified") return SamplerKind::Stratified;
+    return name == "halton" ? SamplerKind::Halton : SamplerKind::Sobol;
 }
 
 /// The loop of iterations: each one leaves a usable image.
@@ -134,6 +144,8 @@ private:
     std::unique_ptr<KernelRadii> kernelRadii_;  ///< none: one radius for all pixels
     std::unique_ptr<CausticMap> causticMap_;
     std::unique_ptr<RadianceMap> globalMap_;
+    std::unique_ptr<TexelIrradiance> texels_;
+    std::vector<LightSplat> lightSplats_;
     std::unique_ptr<IrradianceCache> cache_;
     double radiusScale_ = 1.0;         ///< squared, of the caustic kernel
     std::uint32_t iteration_ = 0, generation_ = 0;
@@ -155,6 +167,8 @@ void Renderer::prepare() {
     pilotStage_.rays += plan_.pilotRays;
     pilotStage_.photonsEmitted += plan_.pilotPhotons;
     if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), KernelRadiusOptions{});
+    if (request_.method == Method::Reference) context_.options.left = {plan_.lightPass, plan_.texelWidth > 0.0F};
+    if (plan_.texelWidth > 0.0F) texels_ = std::make_unique<TexelIrradiance>(scene_, camera_, plan_.texelWidth);
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
 }
 
@@ -162,7 +176,7 @@ void Renderer::iterate() {
     if (plan_.cache && (iteration_ == 0 || raysSince_ > kGenerationShare * raysOfGeneration_)) renewGeneration();
     if (plan_.causticMap) causticPass();
     if (plan_.lightPass) lightPass();
-    if (request_.method == Method::Bdpt) bidirectionalPass();
+    if (request_.method == Method::Bdpt || plan_.bidirectional) bidirectionalPass();
     else if (request_.method != Method::Light) eyePass();
     else film_.countSamples(1);
 }
@@ -227,11 +241,18 @@ void Renderer::causticPass() {
 
 void Renderer::lightPass() {
     const StageTimer timer(lightStage_);
-    const LightPass pass = traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_);
+    if (texels_) texels_->look(request_.seed, iteration_, workers_);
+    LightPass pass = traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_,
+                                     texels_ ? &survey_.visible : nullptr);
     lightStage_.rays += pass.rays;
     lightStage_.photonsEmitted += pass.emitted;
     lightStage_.photonsStored += pass.splats.size();
-    film_.addSplats(pass.splats, iteration_);
+    if (texels_) {
+        texels_->deposit(pass.arrivals, iteration_);
+        texels_->resolve(iteration_, pass.splats);
+    }
+    lightSplats_ = std::move(pass.splats);
+    if (!plan_.bidirectional) film_.addSplats(lightSplats_, iteration_);
     learn(pass.useful);
 }
 
@@ -256,12 +277,13 @@ void Renderer::forTiles(const Body& body) const {
 
 void Renderer::eyePass() {
     const StageTimer timer(eyeStage_);
+    const SamplerKind numbers = samplerKind(request_.settings.sampler);
     std::vector<std::uint64_t> rays(tiles(), 0);
     forTiles([&](std::size_t tile, const auto& forPixels) {
         Walk walk(context_);
         StringSums strings;
         forPixels([&](std::size_t pixel, const glm::vec2& corner) {
-            Sampler sampler(request_.seed, pixel, film_.samples());
+            Sampler sampler(request_.seed, pixel, film_.samples(), numbers);
             const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
             const CameraRay ray = camera_.ray(corner + jitter, lens);
             FirstHit first;
@@ -283,14 +305,15 @@ void Renderer::eyePass() {
 /// An eye path and a light path for every pixel. Splats wait in their tile and are added in the order of the tiles.
 void Renderer::bidirectionalPass() {
     const StageTimer timer(eyeStage_);
+    const SamplerKind numbers = samplerKind(request_.settings.sampler);
     std::vector<std::uint64_t> rays(tiles(), 0);
     std::vector<std::vector<LightSplat>> splats(tiles());
     forTiles([&](std::size_t tile, const auto& forPixels) {
         Bidirectional paths(scene_, camera_, context_.options, static_cast<std::uint32_t>(film_.pixels()));
         StringSums strings;
         forPixels([&](std::size_t pixel, const glm::vec2& corner) {
-            Sampler eye(request_.seed, pixel, film_.samples());
-            Sampler light(request_.seed, kBidirectionalPass + film_.samples(), static_cast<std::uint32_t>(pixel));
+            Sampler eye(request_.seed, pixel, film_.samples(), numbers);
+            Sampler light(request_.seed, kBidirectionalPass + film_.samples(), static_cast<std::uint32_t>(pixel), numbers);
             const glm::vec2 jitter = eye.next2D(), lens = eye.next2D();
             FirstHit first;
             strings.clear();
@@ -300,7 +323,8 @@ void Renderer::bidirectionalPass() {
         });
         rays[tile] = paths.rays();
     });
-    std::vector<LightSplat> all;
+    std::vector<LightSplat> all = std::move(lightSplats_);  // of a light pass before this one
+    lightSplats_.clear();
     for (const auto& s : splats) all.insert(all.end(), s.begin(), s.end());
     film_.addSplats(all, film_.samples());
     film_.countSamples(1);
@@ -354,6 +378,7 @@ RenderRecord Renderer::record() const {
     r.nonfinite = film_.nonfinite();
     r.resolved = resolvedSettings(request_.settings, plan_);
     r.threads = workers_.threads();
+    if (texels_) r.texels = {texels_->texels(), static_cast<double>(plan_.texelWidth) / scene_.normalisation().scale(), texels_->extrapolated()};
     return r;
 }
 
@@ -414,7 +439,7 @@ void Renderer::resume() {
             if (kernelRadii_) kernelRadii_->learn(CausticMap(std::move(pass.photons)), survey_.points, workers_);
         }
         if (plan_.lightPass)
-            learn(traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_).useful);
+            learn(traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_, texels_ ? &survey_.visible : nullptr).useful);
     }
     raysOfGeneration_ = state->raysOfGeneration;
     raysSince_ = state->raysSince;

@@ -22,7 +22,7 @@ enum VertexDimension : std::uint64_t { kCoin, kConnectChoice, kConnectPoint, kSc
 }  // namespace
 
 Bidirectional::Bidirectional(const Scene& scene, const Camera& camera, const TransportOptions& options, std::uint32_t lightPaths) noexcept
-    : scene_(scene), camera_(camera), rules_{options.powerHeuristic, options.rouletteThreshold, options.maxDepth, lightPaths},
+    : scene_(scene), camera_(camera), left_(options.left), rules_{options.powerHeuristic, options.rouletteThreshold, options.maxDepth, lightPaths},
       eye_(scene, rules_, Subpath::From::Eye), light_(scene, rules_, Subpath::From::Light) {}
 
 LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sampler& light, std::vector<LightSplat>& splats, FirstHit* first,
@@ -36,12 +36,12 @@ LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sample
         eye.setDimension(dimension + kCoin);
         ++rays_;
         if (!eye_.advance(eye.next1D())) {
-            sum.add(eye_.string(), eye_.escaped());
+            if (!left_.has(eye_.string())) sum.add(eye_.string(), eye_.escaped());
             return sum;
         }
         const PathVertex& z = eye_.last();
         if (first != nullptr && eye_.vertices().size() == 1) *first = {z.bsdf.diffuse().reflectance, z.bsdf.shadingNormal(), z.hit.distance, 0.0F};
-        sum.add(eye_.string(), eye_.emitted());
+        if (!left_.has(eye_.string())) sum.add(eye_.string(), eye_.emitted());
         eye.setDimension(dimension + kConnectChoice);
         const float choose = eye.next1D();
         const glm::vec2 point = eye.next2D();
@@ -107,8 +107,8 @@ void Bidirectional::splat(const PathVertex& y, std::size_t index, const glm::vec
         if (isBlack(value->byKind[k])) continue;
         PathString path;
         path.pass(static_cast<LobeKinds>(1U << k));
-        splats.push_back({static_cast<std::uint32_t>(py * camera_.width() + px), y.throughput * value->byKind[k] * visible * scale,
-                          withLightEnd(path, index)});
+        path = withLightEnd(path, index);
+        if (!left_.has(path)) splats.push_back({static_cast<std::uint32_t>(py * camera_.width() + px), y.throughput * value->byKind[k] * visible * scale, path});
     }
 }
 
@@ -136,7 +136,7 @@ void Bidirectional::addDirect(const PathVertex& z, float choose, const glm::vec2
         if (isBlack(value->byKind[k])) continue;
         PathString path = z.before;
         path.pass(static_cast<LobeKinds>(1U << k));
-        sum.add(path, arriving * value->byKind[k]);
+        if (!left_.has(path)) sum.add(path, arriving * value->byKind[k]);
     }
 }
 
@@ -169,7 +169,8 @@ void Bidirectional::connect(const PathVertex& z, std::size_t lightVertex, Layere
             PathString path = z.before;
             path.pass(static_cast<LobeKinds>(1U << a));
             path.pass(static_cast<LobeKinds>(1U << b));
-            sum.add(withLightEnd(path, lightVertex), scale * atEye->byKind[a] * atLight->byKind[b]);
+            path = withLightEnd(path, lightVertex);
+            if (!left_.has(path)) sum.add(path, scale * atEye->byKind[a] * atLight->byKind[b]);
         }
 }
 

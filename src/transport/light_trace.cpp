@@ -44,7 +44,7 @@ namespace {
 }  // namespace
 
 LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide, const PhotonPassKey& key,
-                          const Workers& workers) {
+                          const Workers& workers, const VisibleCells* looked) {
     const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
     const auto chunks = inChunks<LightPass>(key.paths, workers, [&](std::uint32_t index, LightPass& out) {
         Sampler sampler(key.seed, key.pass, index);
@@ -58,7 +58,12 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
             const auto a = arrive(scene, path, sampler);
             if (!a) break;
             if (path.vertices > 1 && (a->bsdf.kinds() & (kGlossy | kDiffuse)) != kNoLobe) {
-                if (connect(scene, camera, *a, path.flux * perPath, lens, out)) arrived += luminance(path.flux);
+                const bool kept = looked != nullptr && (a->bsdf.kinds() & kDiffuse) != kNoLobe;
+                const bool splatted = connect(scene, camera, *a, path.flux * perPath, lens, out);
+                if (splatted || (kept && looked->seen(a->hit.point.position))) arrived += luminance(path.flux);
+                if (kept)
+                    out.arrivals.push_back({a->hit.point.geometry, a->hit.point.primitive, a->hit.point.barycentric, a->bsdf.backSide(),
+                                            std::min(1.0F, std::fabs(glm::dot(a->wi, a->bsdf.shadingNormal()))), path.flux * (a->shading * perPath)});
             }
             if (!scatter(scene, path, *a, kSpecular, sampler)) break;
         }
@@ -72,6 +77,7 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
     pass.emitted = key.paths;
     for (const LightPass& c : chunks) {
         pass.splats.insert(pass.splats.end(), c.splats.begin(), c.splats.end());
+        append(pass.arrivals, c.arrivals);
         pass.useful.insert(pass.useful.end(), c.useful.begin(), c.useful.end());
         pass.rays += c.rays;
     }

@@ -47,11 +47,10 @@ struct Walk::State {
     int vertices = 0;
     bool gathering = false;          ///< behind the first D vertex: the global map may answer
     bool causticServed = false;      ///< at this D vertex: what comes over S alone is counted
-    bool straight = true;            ///< the eye saw its first X vertex without any S before it
 
     /// Whether a lamp that is met now belongs to path tracing.
-    [[nodiscard]] bool lampCounts(bool leaveCaustics) const noexcept {
-        if (leaveCaustics && straight && ledger.atLight() == PathClass::Caustic) return false;
+    [[nodiscard]] bool lampCounts(const LeftClasses& left) const noexcept {
+        if (left.has(ledger.path())) return false;
         if (chainEmpty) return !skipDirect;
         return behind != Behind::CausticMapped || !chainSpecular;
     }
@@ -72,22 +71,34 @@ float Walk::misWeight(float mine, float other) const noexcept {
     return context_.options.powerHeuristic ? 1.0F / (1.0F + ratio * ratio) : 1.0F / (1.0F + ratio);
 }
 
+float Walk::hitWeight(float pdfSampled, float pdfLight) const noexcept {
+    switch (context_.options.lights) {
+        case LightStrategy::Chance:
+            return 1.0F;
+        case LightStrategy::NextEvent:
+            return pdfLight > 0.0F ? 0.0F : 1.0F;
+        case LightStrategy::Both:
+            break;
+    }
+    return misWeight(pdfSampled, pdfLight);
+}
+
 void Walk::addEscaped(State& state) const noexcept {
     const Environment* environment = context_.scene.environment();
-    if (environment == nullptr || !state.lampCounts(context_.options.leaveCaustics)) return;
+    if (environment == nullptr || !state.lampCounts(context_.options.left)) return;
     float weight = 1.0F;
     if (state.lampSampled)
-        weight = misWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
+        weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
     state.radiance.add(state.ledger.path(), state.throughput * environment->radiance(state.ray.ray.direction) * weight);
 }
 
 void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
-    if (!state.lampCounts(context_.options.leaveCaustics)) return;
+    if (!state.lampCounts(context_.options.left)) return;
     const Rgb emitted = context_.scene.surfaces().emittedRadiance(hit.point, -state.ray.ray.direction);
     if (isBlack(emitted)) return;
     float weight = 1.0F;
     if (state.lampSampled)
-        weight = misWeight(state.pdfSolidAngle,
+        weight = hitWeight(state.pdfSolidAngle,
                            context_.scene.lights().pdfTriangle(state.lightPoint, state.lightNormal, hit.point.geometry, hit.point.primitive,
                                                                state.ray.ray.direction, hit.distance));
     state.radiance.add(state.ledger.path(), state.throughput * emitted * weight);
@@ -111,7 +122,9 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
             }
             // Near a corner all but the caustics, which path tracing hardly finds, goes on.
             if (found && maps.caustic != nullptr) {
-                state.radiance[PathClass::Indirect] += state.throughput * outgoing * found->caustic;
+                PathString path = state.ledger.pathAfter(kDiffuse);
+                path.pass(kSpecular);
+                state.radiance.add(path, state.throughput * outgoing * found->caustic);
                 state.causticServed = true;
             }
         }
@@ -143,7 +156,8 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     const glm::vec3& position = vertex.hit.point.position;
     const auto light = context_.scene.lights().sample(position, vertex.lightNormal, choice, u);
     if (!light || !(light->pdfSolidAngle > 0.0F)) return;
-    const float pdfSampled = light->delta ? 0.0F : vertex.bsdf.pdf(vertex.wo, light->wi, sampled);
+    const bool weighted = context_.options.lights == LightStrategy::Both && !light->delta;
+    const float pdfSampled = weighted ? vertex.bsdf.pdf(vertex.wo, light->wi, sampled, context_.options.directions) : 0.0F;
     const float shared = misWeight(light->pdfSolidAngle, pdfSampled);
     std::array<Rgb, 3> sum{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};  // by kind
     for (std::size_t i = 0; i < 3; ++i) {
@@ -174,7 +188,7 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     const float chooseLobe = sampler.next1D();
     const glm::vec2 u = sampler.next2D();
     const float chooseKind = sampler.next1D();
-    const auto sample = vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance);
+    const auto sample = vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance, context_.options.directions);
     if (!sample) return false;
     LobeKinds kind = sample->kind;
     Rgb weight = sample->weight;
@@ -199,7 +213,6 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     state.throughput *= weight;
     state.etaScale *= sample->etaScale;
     const bool casts = kind == kSpecular;
-    if (casts && state.ledger.atLight() == PathClass::Emission) state.straight = false;
     state.ledger.pass(kind);
     if (kind == kDiffuse) {
         state.behind = state.causticServed ? Behind::CausticMapped : Behind::PathTraced;
@@ -268,8 +281,9 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     }
     // S lobes behind a mapped receiver are the caustic map's, the whole chain long.
     const bool chainMapped = state.behind == Behind::CausticMapped && state.gathering && state.chainSpecular;
-    const bool left = context_.options.leaveCaustics && state.straight && state.ledger.atLightAfter(kSpecular) == PathClass::Caustic;
+    const bool left = context_.options.left.has(state.ledger.pathAfter(kSpecular));
     if (chainMapped || left) direct = direct & (kGlossy | kDiffuse);
+    if (context_.options.lights == LightStrategy::Chance) direct = static_cast<LobeKinds>(direct & ~static_cast<unsigned>(sampled));
     sampler.setDimension(dimension + kLightChoice);
     if (direct != kNoLobe) addDirect(state, vertex, direct, sampled, sampler);
     if (sampled == kNoLobe) return false;

@@ -32,6 +32,8 @@ struct Plan {
     float cacheError = 0.25F;
     int gatherRays = 512;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
+    bool bidirectional = false;          ///< eye paths meet light paths
+    float texelWidth = 0.0F;             ///< of the texel irradiance, scene units; 0: off
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;
     std::vector<std::string> blindSpots;

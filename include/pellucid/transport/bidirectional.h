@@ -34,6 +34,7 @@ private:
 
     const Scene& scene_;
     const Camera& camera_;
+    LeftClasses left_;
     SubpathRules rules_;
     Subpath eye_, light_;
     std::uint64_t rays_ = 0;

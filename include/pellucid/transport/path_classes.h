@@ -21,6 +21,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,7 @@ public:
     static constexpr int kCodes = 128;
 
     constexpr PathString() noexcept = default;
+    constexpr bool operator==(const PathString&) const noexcept = default;
     constexpr explicit PathString(std::uint8_t code) noexcept : code_(code) {}
 
     /// The path goes over one more vertex by a lobe of this kind (exactly one bit).
@@ -69,6 +71,24 @@ public:
 private:
     static constexpr unsigned kS = 1, kG = 2, kD = 3, kOn = 64;
     std::uint8_t code_ = 0;
+};
+
+/// The string over these kinds of lobes, from the eye.
+[[nodiscard]] constexpr PathString stringOver(std::initializer_list<LobeKinds> kinds) noexcept {
+    PathString path;
+    for (const LobeKinds kind : kinds) path.pass(kind);
+    return path;
+}
+
+/// Classes that another estimator carries: a walk adds nothing to them.
+struct LeftClasses {
+    bool caustics = false;       ///< E X S+ L: light tracing
+    bool seenCaustics = false;   ///< E S+ D S+ L: texel irradiance
+
+    [[nodiscard]] constexpr bool has(PathString path) const noexcept {
+        if (caustics && (path == stringOver({kDiffuse, kSpecular}) || path == stringOver({kGlossy, kSpecular}))) return true;
+        return seenCaustics && path == stringOver({kSpecular, kDiffuse, kSpecular});
+    }
 };
 
 /// Every string that a path over lobes of these kinds can have, by code.

@@ -24,11 +24,17 @@ struct Maps {
     float causticRadiusMax = 1.0F;
 };
 
+/// How light reaches a vertex: by chance when a direction meets a lamp, by next-event estimation where that can find it,
+/// or by both, weighted.
+enum class LightStrategy : std::uint8_t { Chance, NextEvent, Both };
+
 struct TransportOptions {
+    Directions directions = Directions::Bsdf;
+    LightStrategy lights = LightStrategy::Both;
     bool powerHeuristic = true;
     float rouletteThreshold = 1.0F;   ///< 0: no Russian roulette
     int maxDepth = 0;                 ///< surface vertices; 0: no limit
-    bool leaveCaustics = false;       ///< E X S+ L adds 0: light tracing carries it
+    LeftClasses left;                 ///< classes that others carry
 };
 
 struct TransportContext {
@@ -94,6 +100,8 @@ private:
     void addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] bool scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] float misWeight(float mine, float other) const noexcept;
+    /// Of a lamp that a sampled direction met; `pdfLight`: that of next-event estimation.
+    [[nodiscard]] float hitWeight(float pdfSampled, float pdfLight) const noexcept;
 
     const TransportContext& context_;
     std::uint64_t rays_ = 0, cacheMisses_ = 0;
