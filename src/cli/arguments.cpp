@@ -22,7 +22,8 @@ constexpr std::array<std::string_view, 4> kImageExtensions{".exr", ".png", ".hdr
 constexpr std::array<std::string_view, 1> kMapExtensions{".png"}, kPlotExtensions{".svg"};
 
 const std::map<std::string, Method> kMethods{
-    {"photon", Method::Photon}, {"path", Method::Path}, {"light", Method::Light}, {"reference", Method::Reference}};
+    {"photon", Method::Photon}, {"path", Method::Path}, {"light", Method::Light}, {"reference", Method::Reference},
+    {"bdpt", Method::Bdpt}};
 
 /// Option texts as typed, until all are known: a --config is read before the first --set, wherever they stand.
 struct TypedText {
@@ -76,7 +77,8 @@ void addSceneOptions(CLI::App& app, SceneArguments& common, TypedText& typed) {
     addPictureOptions(app, common, typed);
     app.add_option("--method", typed.method,
                    "photon (default): maps, cache and gather. path: unbiased path tracing. "
-                   "light: light tracing only. reference: path and light tracing by path class")
+                   "light: light tracing only. reference: path and light tracing by path class. "
+                   "bdpt: bidirectional path tracing")
         ->check(CLI::IsMember(kMethods))
         ->type_name("NAME");
     addBudget<double>(app, "--time", common.budget.seconds, "stop after so many seconds, loading included")
@@ -141,7 +143,8 @@ struct Parser {
         command
             ->add_option("--layers", typed.layers,
                          "more layers in the EXR: albedo, normal, depth, variance, records, "
-                         "radius, all or none; emission, direct, caustic and indirect are always there")
+                         "radius, classes (each path class by itself), all (but classes) or none; emission, direct, "
+                         "caustic and indirect are always there")
             ->type_name("A,B,...");
         command->add_option("--record", render.record, "what was done, as JSON")->type_name("FILE.json");
         CLI::Option* checkpoint =
@@ -211,7 +214,7 @@ struct Parser {
             ->type_name("DIR");
         command
             ->add_option("--methods", typed.methods,
-                         "photon, path, light, reference, each with settings of its own after a colon")
+                         "photon, path, bdpt, light, reference, each with settings of its own after a colon")
             ->required()
             ->type_name("M[:KEY=VALUE+...],...");
         command->add_option("--times", typed.times, "budgets of each run, in seconds")->required()->type_name("S,S,...");

@@ -17,7 +17,7 @@ constexpr const char* kLayerNames[kPathClasses] = {"emission", "direct", "causti
 }  // namespace
 
 const std::vector<std::string>& auxiliaryLayers() noexcept {
-    static const std::vector<std::string> names{"albedo", "normal", "depth", "variance", "radius", "records"};
+    static const std::vector<std::string> names{"albedo", "normal", "depth", "variance", "radius", "records", "classes"};
     return names;
 }
 
@@ -35,7 +35,7 @@ void Film::add(std::size_t pixel, std::uint32_t sample, const LayeredRadiance& r
         for (glm::length_t c = 0; c < 3; ++c) p.layer[l][c] += static_cast<double>(radiance.layer[l][c]);
     if ((sample & 1U) != 0)
         for (glm::length_t c = 0; c < 3; ++c) p.half[c] += static_cast<double>(total[c]);
-    const double y = static_cast<double>(pellucid::luminance(total));
+    const double y = static_cast<double>(luminance(total));
     p.square += y * y;
     for (glm::length_t c = 0; c < 3; ++c) {
         p.albedo[c] += first.albedo[c];
@@ -43,6 +43,35 @@ void Film::add(std::size_t pixel, std::uint32_t sample, const LayeredRadiance& r
     }
     p.depth += first.depth;
     p.radius += first.kernelRadius;
+    if (radiance.strings == nullptr || stringSlots_.empty()) return;
+    for (const auto& [path, value] : *radiance.strings) {
+        double* sum = &strings_[(static_cast<std::size_t>(slotOf_[path.code()]) * pixels_.size() + pixel) * 3];
+        for (glm::length_t c = 0; c < 3; ++c) sum[c] += static_cast<double>(value[c]);
+    }
+}
+
+void Film::keepStrings(LobeKinds kinds) {
+    stringSlots_ = possibleStrings(kinds);
+    for (std::size_t i = 0; i < stringSlots_.size(); ++i) slotOf_[stringSlots_[i].code()] = static_cast<std::int16_t>(i);
+    strings_.assign(stringSlots_.size() * pixels_.size() * 3, 0.0);
+    splatStrings_ = strings_;
+}
+
+double Film::stringMean(std::size_t slot, std::size_t pixel, std::size_t channel) const noexcept {
+    const std::size_t i = (slot * pixels_.size() + pixel) * 3 + channel;
+    return strings_[i] / std::max<std::uint32_t>(1, samples_) + splatStrings_[i] / std::max<std::uint32_t>(1, splatPasses_);
+}
+
+std::vector<std::pair<std::size_t, std::string>> Film::litStrings() const {
+    std::vector<std::pair<std::size_t, std::string>> lit;
+    const std::size_t plane = pixels_.size() * 3;
+    const auto isLit = [](double v) { return v != 0.0; };
+    for (std::size_t s = 0; s < stringSlots_.size(); ++s) {
+        const auto at = static_cast<std::ptrdiff_t>(s * plane), end = static_cast<std::ptrdiff_t>((s + 1) * plane);
+        if (std::any_of(strings_.begin() + at, strings_.begin() + end, isLit) || std::any_of(splatStrings_.begin() + at, splatStrings_.begin() + end, isLit))
+            lit.emplace_back(s, "class." + stringSlots_[s].name());
+    }
+    return lit;
 }
 
 void Film::addSplats(const std::vector<LightSplat>& splats, std::uint32_t pass) noexcept {
@@ -53,10 +82,19 @@ void Film::addSplats(const std::vector<LightSplat>& splats, std::uint32_t pass) 
             if (p.nonfinite++ == 0) p.firstNonfinite = pass;
             continue;
         }
+        p.splatPass += luminance(s.radiance);
+        double* string = stringSlots_.empty() ? nullptr : &splatStrings_[(static_cast<std::size_t>(slotOf_[s.path.code()]) * pixels_.size() + s.pixel) * 3];
         for (glm::length_t c = 0; c < 3; ++c) {
-            p.splat[c] += static_cast<double>(s.radiance[c]);
-            if ((pass & 1U) != 0) p.splatHalf[c] += static_cast<double>(s.radiance[c]);
+            const auto value = static_cast<double>(s.radiance[c]);
+            p.splat[static_cast<std::size_t>(s.path.layer())][c] += value;
+            if ((pass & 1U) != 0) p.splatHalf[c] += value;
+            if (string != nullptr) string[c] += value;
         }
+    }
+    for (const LightSplat& s : splats) {
+        Pixel& p = pixels_[s.pixel];
+        p.splatSquare += static_cast<double>(p.splatPass) * static_cast<double>(p.splatPass);
+        p.splatPass = 0.0F;
     }
 }
 
@@ -65,24 +103,36 @@ Rgb Film::mean(const Pixel& p, int layer) const noexcept {
     const double n = std::max<std::uint32_t>(1, samples_);
     for (glm::length_t c = 0; c < 3; ++c) {
         double v = p.layer[layer][c] / n;
-        if (layer == static_cast<int>(PathClass::Caustic) && splatPasses_ > 0) v += p.splat[c] / splatPasses_;
+        if (splatPasses_ > 0) v += p.splat[layer][c] / splatPasses_;
         value[c] = static_cast<float>(v);
     }
     return value;
 }
 
-double Film::luminance(int x, int y) const noexcept {
+double Film::luminanceAt(int x, int y) const noexcept {
     const Pixel& p = pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
     Rgb sum(0.0F);
     for (int l = 0; l < kPathClasses; ++l) sum += mean(p, l);
-    return static_cast<double>(pellucid::luminance(sum));
+    return static_cast<double>(luminance(sum));
 }
 
 double Film::meanLuminance() const noexcept {
     double sum = 0.0;
     for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x) sum += luminance(x, y);
+        for (int x = 0; x < width_; ++x) sum += luminanceAt(x, y);
     return sum / static_cast<double>(std::max<std::size_t>(1, pixels_.size()));
+}
+
+/// Of the pixel's mean luminance: sample variance over the number of samples, of the eye's samples and of the passes'
+/// splats, which are taken as independent of each other.
+double Film::variance(const Pixel& p) const noexcept {
+    const auto ofMean = [](const double (&layers)[kPathClasses][3], double square, double count) {
+        double sum = 0.0;
+        for (const auto& l : layers) sum += 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2];
+        const double m = sum / count;
+        return std::max(0.0, square / count - m * m) / std::max(1.0, count - 1.0);
+    };
+    return ofMean(p.layer, p.square, std::max<std::uint32_t>(1, samples_)) + ofMean(p.splat, p.splatSquare, std::max<std::uint32_t>(1, splatPasses_));
 }
 
 Image Film::image(const std::vector<std::string>& layers) const {
@@ -92,12 +142,14 @@ Image Film::image(const std::vector<std::string>& layers) const {
     };
     for (const char* l : kLayerNames) addRgb(l);
     const bool albedo = wants(layers, "albedo"), normal = wants(layers, "normal"), depth = wants(layers, "depth"),
-               variance = wants(layers, "variance"), radius = wants(layers, "radius");
+               withVariance = wants(layers, "variance"), radius = wants(layers, "radius");
     if (albedo) addRgb("albedo");
     if (normal) names.insert(names.end(), {"normal.X", "normal.Y", "normal.Z"});
     if (depth) names.emplace_back("depth.Z");
-    if (variance) names.emplace_back("variance.Y");
+    if (withVariance) names.emplace_back("variance.Y");
     if (radius) names.emplace_back("radius.Y");
+    const auto strings = litStrings();
+    for (const auto& [slot, name] : strings) addRgb(name);
     Image image(width_, height_, names);
     const auto n = static_cast<float>(std::max<std::uint32_t>(1, samples_));
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
@@ -113,14 +165,10 @@ Image Film::image(const std::vector<std::string>& layers) const {
         if (albedo) image.setRgb(i, Rgb(p.albedo[0], p.albedo[1], p.albedo[2]) / n, channel), channel += 3;
         if (normal) image.setRgb(i, Rgb(p.normal[0], p.normal[1], p.normal[2]) / n, channel), channel += 3;
         if (depth) image.at(i, channel++) = p.depth / n;
-        if (variance) {
-            double y = 0.0;
-            for (const auto& l : p.layer) y += 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2];
-            const double count = std::max<std::uint32_t>(1, samples_), m = y / count;
-            // Of the mean: sample variance over the number of samples.
-            image.at(i, channel++) = static_cast<float>(std::max(0.0, p.square / count - m * m) / std::max(1.0, count - 1.0));
-        }
+        if (withVariance) image.at(i, channel++) = static_cast<float>(variance(p));
         if (radius) image.at(i, channel++) = p.radius / n;
+        for (const auto& [slot, name] : strings)
+            for (std::size_t c = 0; c < 3; ++c) image.at(i, channel++) = static_cast<float>(stringMean(slot, i, c));
     }
     return image;
 }
@@ -138,8 +186,10 @@ double Film::relativeError() const noexcept {
             for (const auto& l : p.layer) sum += l[c];
             double a = p.half[c] / odd, b = (sum - p.half[c]) / even;
             if (oddPasses >= 1.0) {
+                double splats = 0.0;
+                for (const auto& l : p.splat) splats += l[c];
                 a += p.splatHalf[c] / oddPasses;
-                b += (p.splat[c] - p.splatHalf[c]) / evenPasses;
+                b += (splats - p.splatHalf[c]) / evenPasses;
             }
             value[3 * i + c] = 0.5 * (a + b);
             difference[3 * i + c] = 0.5 * (a - b);
@@ -170,18 +220,33 @@ NonFinite Film::nonfinite() const noexcept {
 }
 
 std::vector<char> Film::save() const {
-    std::vector<char> bytes(2 * sizeof(std::uint32_t) + pixels_.size() * sizeof(Pixel));
-    std::memcpy(bytes.data(), &samples_, sizeof samples_);
-    std::memcpy(bytes.data() + sizeof samples_, &splatPasses_, sizeof splatPasses_);
-    std::memcpy(bytes.data() + 2 * sizeof samples_, static_cast<const void*>(pixels_.data()), pixels_.size() * sizeof(Pixel));
+    std::vector<char> bytes;
+    const auto put = [&bytes](const void* from, std::size_t size) {
+        bytes.insert(bytes.end(), static_cast<const char*>(from), static_cast<const char*>(from) + size);
+    };
+    bytes.reserve(savedSize());
+    put(&samples_, sizeof samples_);
+    put(&splatPasses_, sizeof splatPasses_);
+    put(pixels_.data(), pixels_.size() * sizeof(Pixel));
+    for (const auto* sums : {&strings_, &splatStrings_}) put(sums->data(), sums->size() * sizeof(double));
     return bytes;
 }
 
+std::size_t Film::savedSize() const noexcept {
+    return sizeof samples_ + sizeof splatPasses_ + pixels_.size() * sizeof(Pixel) + (strings_.size() + splatStrings_.size()) * sizeof(double);
+}
+
 bool Film::restore(const std::vector<char>& bytes) {
-    if (bytes.size() != 2 * sizeof(std::uint32_t) + pixels_.size() * sizeof(Pixel)) return false;
-    std::memcpy(&samples_, bytes.data(), sizeof samples_);
-    std::memcpy(&splatPasses_, bytes.data() + sizeof samples_, sizeof splatPasses_);
-    std::memcpy(static_cast<void*>(pixels_.data()), bytes.data() + 2 * sizeof samples_, pixels_.size() * sizeof(Pixel));
+    if (bytes.size() != savedSize()) return false;
+    const char* from = bytes.data();
+    const auto take = [&from](void* to, std::size_t size) {
+        std::memcpy(to, from, size);
+        from += size;
+    };
+    take(&samples_, sizeof samples_);
+    take(&splatPasses_, sizeof splatPasses_);
+    take(static_cast<void*>(pixels_.data()), pixels_.size() * sizeof(Pixel));
+    for (auto* sums : {&strings_, &splatStrings_}) take(sums->data(), sums->size() * sizeof(double));
     return true;
 }
 

@@ -104,21 +104,43 @@ void planIndirect(Plan& plan, const RenderRequest& request, const Survey& seen) 
     decide(plan, "global map", plan.globalMap ? "on" : "off", fmt::format("{} photon paths for the first generation of records{}", plan.globalPaths, plan.growPhotons ? ", half as many more for each next" : ""), s.globalPhotons >= 0);
 }
 
-/// Which classes the method cannot see: no sampler of its makes such a path.
-void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request) {
-    const Lights& lights = scene.lights();
-    std::size_t delta = 0;
+[[nodiscard]] std::size_t pointLikeLights(const Lights& lights) {
+    std::size_t count = 0;
     for (std::uint32_t l = 0; l < lights.count(); ++l) {
         const LightKind k = lights.kind(l);
-        if (k == LightKind::Point || k == LightKind::Spot || k == LightKind::Directional) ++delta;
+        if (k == LightKind::Point || k == LightKind::Spot || k == LightKind::Directional) ++count;
     }
+    return count;
+}
+
+/// What a reference adds to light tracing where caustics are.
+void planReference(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen) {
+    const std::size_t delta = pointLikeLights(scene.lights());
+    plan.bidirectional = delta > 0;
+    decide(plan, "eye paths", plan.bidirectional ? "bidirectional" : "path tracing",
+           fmt::format("{} point-like light{}{}", delta, delta == 1 ? "" : "s", delta > 0 ? ": path tracing sees nothing that their caustics light" : ""));
+    if (seen.receivers == 0) return;
+    plan.texelWidth = static_cast<float>(request.settings.texelWidth) * seen.medianFootprint;
+    decide(plan, "texel irradiance", plan.texelWidth > 0.0F ? "on" : "off",
+           fmt::format("caustics in mirrors and through glass by texels {} pixel footprints wide and half that, extrapolated", request.settings.texelWidth),
+           request.settings.texelWidth == 0.0);
+}
+
+/// Which classes the method cannot see: no sampler of its makes such a path.
+void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request) {
+    const std::size_t delta = pointLikeLights(scene.lights());
     const bool casts = (scene.lobeKinds() & kSpecular) != kNoLobe;
+    if (delta > 0 && request.method == Method::Path && request.settings.lightStrategy == "none")
+        plan.blindSpots.push_back(fmt::format("{} point-like light{}: path.lights=none meets lamps by chance, and these never", delta, delta == 1 ? "" : "s"));
     if (!casts || delta == 0) return;
     const std::string which = fmt::format("{} point-like light{} and surfaces that cast caustics: ", delta, delta == 1 ? "" : "s");
     if (request.method == Method::Path)
         plan.blindSpots.push_back(which + "path tracing sees none of their caustics (E .. D S+ L)");
     if (request.method == Method::Reference)
-        plan.blindSpots.push_back(which + "caustics that are themselves seen through glass or in a mirror (E S+ D S+ L), and light that a caustic scatters on, are missing");
+        plan.blindSpots.push_back(which + (plan.texelWidth > 0.0F ? "caustics of caustics that are themselves seen in a perfect mirror or through smooth glass (E S+ D S+ D S+ L) and caustics on rough metal seen so are missing"
+                                                                  : "caustics that are themselves seen through glass or in a mirror (E S+ D S+ L) are missing"));
+    if (request.method == Method::Bdpt)
+        plan.blindSpots.push_back(which + "bidirectional path tracing sees none of their caustics behind perfect mirrors or smooth glass (E S+ D S+ L)");
     if (request.method == Method::Photon && !plan.causticMap) plan.blindSpots.push_back(which + "the caustic map is off and path tracing sees none of it");
 }
 
@@ -163,12 +185,14 @@ GenerationSize Plan::generation(std::uint32_t number) const noexcept {
 }
 
 Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen, const Workers& workers) {
-    (void)camera;
     Plan plan;
     plan.alpha = static_cast<float>(request.settings.alpha);
     if (request.method == Method::Photon) {
         planCaustics(plan, scene, request, seen, workers);
         planIndirect(plan, request, seen);
+    } else if (request.method == Method::Bdpt) {
+        decide(plan, "light paths", fmt::format("{} a pass", camera.width() * camera.height()),
+               "one for each eye path: connected to it vertex by vertex, and splatted on the whole image");
     } else if (request.method != Method::Path) {
         if ((scene.lobeKinds() & kSpecular) == kNoLobe) {
             decide(plan, "light tracing", "off", "no material casts caustics");
@@ -178,6 +202,7 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
             plan.causticPaths = static_cast<std::uint32_t>(std::clamp(static_cast<double>(seen.points.size()), 2e4, 4e6));
             decide(plan, "light tracing", fmt::format("{} paths an iteration", plan.causticPaths),
                    fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons));
+            if (request.method == Method::Reference) planReference(plan, scene, request, seen);
         }
     } else {
         decide(plan, "photons, cache", "off", "path tracing needs none");

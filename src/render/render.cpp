@@ -5,14 +5,17 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <tuple>
 
 #include <pellucid/base/error.h>
 #include <pellucid/render/film.h>
 #include <pellucid/render/plan.h>
+#include <pellucid/transport/bidirectional.h>
 #include <pellucid/transport/caustic_map.h>
 #include <pellucid/transport/kernel_radius.h>
 #include <pellucid/transport/photon_trace.h>
 #include <pellucid/transport/radiance_map.h>
+#include <pellucid/transport/texel_irradiance.h>
 
 #include "cache_builder.h"
 #include "checkpoint.h"
@@ -25,7 +28,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kTile = 16;
-constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, kLightPass = 3ULL << 40U, kCachePass = 4ULL << 40U;
+constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, kLightPass = 3ULL << 40U, kCachePass = 4ULL << 40U,
+                        kBidirectionalPass = 5ULL << 40U;
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
 constexpr double kGenerationShare = 1.5;
 /// How much longer the next generation takes, about.
@@ -58,9 +62,11 @@ private:
 [[nodiscard]] TransportOptions transportOptions(const RenderRequest& request) {
     TransportOptions o;
     o.powerHeuristic = request.settings.misHeuristic == "power";
+    const auto& [directions, lights] = std::tie(request.settings.directions, request.settings.lightStrategy);
+    o.directions = directions == "uniform" ? Directions::Uniform : directions == "cosine" ? Directions::Cosine : Directions::Bsdf;
+    o.lights = lights == "none" ? LightStrategy::Chance : lights == "nee" ? LightStrategy::NextEvent : LightStrategy::Both;
     o.rouletteThreshold = static_cast<float>(request.settings.rouletteThreshold);
     o.maxDepth = request.settings.maxDepth;
-    o.leaveCaustics = request.method == Method::Reference;
     return o;
 }
 
@@ -75,6 +81,12 @@ void addEnergy(StageRecord& stage, const EnergyBalance& pass) {
     mean.energy = {};
     if (stage.photonPasses > 0) mean.energy.add(stage.energy, 1.0 / (stage.photonPasses * scale * scale));
     return mean;
+}
+
+[[nodiscard]] SamplerKind samplerKind(const std::string& name) {
+    if (name == "independent") return SamplerKind::Independent;
+    if (name == "stratified") return SamplerKind::Stratified;
+    return name == "halton" ? SamplerKind::Halton : SamplerKind::Sobol;
 }
 
 /// The loop of iterations: each one leaves a usable image.
@@ -144,7 +156,11 @@ private:
     void lightPass();
     void eyePass();
     void makeMaps();
-    [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, FirstHit& first) const;
+    [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, FirstHit& first, StringSums* strings = nullptr) const;
+    void bidirectionalPass();
+    template <class Body>
+    void forTiles(const Body& body) const;
+    [[nodiscard]] std::size_t tiles() const;
     [[nodiscard]] bool finished() const;
     void keepWindows();
     [[nodiscard]] std::uint64_t ofWholeImage(std::uint64_t rays) const;
@@ -188,6 +204,8 @@ private:
     std::unique_ptr<KernelRadii> kernelRadii_;  ///< none: one radius for all pixels
     std::unique_ptr<CausticMap> causticMap_;
     std::unique_ptr<RadianceMap> globalMap_;
+    std::unique_ptr<TexelIrradiance> texels_;
+    std::vector<LightSplat> lightSplats_;
     std::unique_ptr<IrradianceCache> cache_;
     double radiusScale_ = 1.0;         ///< squared, of the caustic kernel
     std::vector<bool> inWindow_;       ///< by pixel; empty: all are
@@ -201,7 +219,9 @@ private:
 
 void Renderer::prepare() {
     const StageTimer timer(pilotStage_);
-    if (request_.method != Method::Path) {
+    const auto& layers = request_.layers;
+    if (std::find(layers.begin(), layers.end(), "classes") != layers.end()) film_.keepStrings(scene_.lobeKinds());
+    if (request_.method != Method::Path && request_.method != Method::Bdpt) {
         survey_ = survey(context_, camera_, request_.seed, workers_);
         pilotStage_.rays += survey_.rays;
     }
@@ -210,6 +230,8 @@ void Renderer::prepare() {
     pilotStage_.rays += plan_.pilotRays;
     pilotStage_.photonsEmitted += plan_.pilotPhotons;
     if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), KernelRadiusOptions{});
+    if (request_.method == Method::Reference) context_.options.left = {plan_.lightPass, plan_.texelWidth > 0.0F};
+    if (plan_.texelWidth > 0.0F) texels_ = std::make_unique<TexelIrradiance>(scene_, camera_, plan_.texelWidth);
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
     if (!request_.windows.empty()) keepWindows();
 }
@@ -254,7 +276,8 @@ void Renderer::makeMaps() {
 void Renderer::iterate() {
     makeMaps();
     if (plan_.lightPass) lightPass();
-    if (request_.method != Method::Light) eyePass();
+    if (request_.method == Method::Bdpt || plan_.bidirectional) bidirectionalPass();
+    else if (request_.method != Method::Light) eyePass();
     else film_.countSamples(1);
 }
 
@@ -310,7 +333,7 @@ void Renderer::weighByNeed(std::vector<UsefulEmission>& useful) const {
         if (!film) continue;
         const int x = static_cast<int>(film->position.x), y = static_cast<int>(film->position.y);
         if (x < 0 || y < 0 || x >= camera_.width() || y >= camera_.height()) continue;
-        const double pixel = film_.samples() > 0 ? film_.luminance(x, y) + floor : 1.0;
+        const double pixel = film_.samples() > 0 ? film_.luminanceAt(x, y) + floor : 1.0;
         need[i] = static_cast<float>(1.0 / (static_cast<double>(kernelRadii_->at(x, y)) * std::max(pixel, 1e-12)));
         sum += static_cast<double>(need[i]);
         ++seen;
@@ -345,43 +368,99 @@ void Renderer::causticPass() {
 
 void Renderer::lightPass() {
     const StageTimer timer(lightStage_);
-    LightPass pass = traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_);
+    if (texels_) texels_->look(request_.seed, iteration_, workers_);
+    LightPass pass = traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_,
+                                     texels_ ? &survey_.visible : nullptr);
     lightStage_.rays += pass.rays;
     lightStage_.photonsEmitted += pass.emitted;
     addEnergy(lightStage_, pass.energy);
     lightStage_.photonsStored += pass.splats.size();
-    film_.addSplats(pass.splats, iteration_);
+    if (texels_) {
+        texels_->deposit(pass.arrivals, iteration_);
+        texels_->resolve(iteration_, pass.splats);
+    }
+    lightSplats_ = std::move(pass.splats);
+    if (!plan_.bidirectional) film_.addSplats(lightSplats_, iteration_);
     learn(std::move(pass.useful));
 }
 
 /// The next sample of a pixel: keyed by seed, pixel and number, whatever was sampled before.
-LayeredRadiance Renderer::samplePixel(Walk& walk, int x, int y, FirstHit& first) const {
-    Sampler sampler(request_.seed, pixelIndex(x, y), film_.samples());
+LayeredRadiance Renderer::samplePixel(Walk& walk, int x, int y, FirstHit& first, StringSums* strings) const {
+    Sampler sampler(request_.seed, pixelIndex(x, y), film_.samples(), samplerKind(request_.settings.sampler));
     const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
     const CameraRay ray = camera_.ray(glm::vec2(static_cast<float>(x), static_cast<float>(y)) + jitter, lens);
-    return walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), false, kernelFootprints(x, y)}, sampler, &first);
+    return walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), kernelFootprints(x, y)}, sampler, &first, strings);
+}
+
+std::size_t Renderer::tiles() const {
+    return static_cast<std::size_t>((camera_.width() + kTile - 1) / kTile) * static_cast<std::size_t>((camera_.height() + kTile - 1) / kTile);
+}
+
+/// Calls body(tile, pixels of the tile as (index, film position of its corner) callback) in parallel.
+template <class Body>
+void Renderer::forTiles(const Body& body) const {
+    const int tilesX = (camera_.width() + kTile - 1) / kTile;
+    workers_.forEach(tiles(), 1, [&](std::size_t tile) {
+        const int x0 = static_cast<int>(tile) % tilesX * kTile, y0 = static_cast<int>(tile) / tilesX * kTile;
+        body(tile, [&](const auto& visit) {
+            for (int y = y0; y < std::min(y0 + kTile, camera_.height()); ++y)
+                for (int x = x0; x < std::min(x0 + kTile, camera_.width()); ++x)
+                    visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x),
+                          glm::vec2(static_cast<float>(x), static_cast<float>(y)));
+        });
+    });
 }
 
 void Renderer::eyePass() {
     const StageTimer timer(eyeStage_, windowScale_);
-    const int tilesX = (camera_.width() + kTile - 1) / kTile, tilesY = (camera_.height() + kTile - 1) / kTile;
-    std::vector<std::uint64_t> rays(static_cast<std::size_t>(tilesX * tilesY), 0);
-    workers_.forEach(rays.size(), 1, [&](std::size_t tile) {
+    std::vector<std::uint64_t> rays(tiles(), 0);
+    forTiles([&](std::size_t tile, const auto& forPixels) {
         Walk walk(context_);
-        const int x0 = static_cast<int>(tile) % tilesX * kTile, y0 = static_cast<int>(tile) / tilesX * kTile;
-        for (int y = y0; y < std::min(y0 + kTile, camera_.height()); ++y)
-            for (int x = x0; x < std::min(x0 + kTile, camera_.width()); ++x) {
-                if (!inWindow_.empty() && !inWindow_[pixelIndex(x, y)]) continue;
-                FirstHit first;
-                const LayeredRadiance radiance = samplePixel(walk, x, y, first);
-                film_.add(pixelIndex(x, y), film_.samples(), radiance, first);
-            }
+        StringSums strings;
+        forPixels([&](std::size_t pixel, const glm::vec2& corner) {
+            if (!inWindow_.empty() && !inWindow_[pixel]) return;
+            FirstHit first;
+            strings.clear();
+            const LayeredRadiance radiance = samplePixel(walk, static_cast<int>(corner.x), static_cast<int>(corner.y), first,
+                                                         film_.keepsStrings() ? &strings : nullptr);
+            film_.add(pixel, film_.samples(), radiance, first);
+        });
         rays[tile] = walk.rays();
     });
     film_.countSamples(1);
     const std::uint64_t total = ofWholeImage(std::accumulate(rays.begin(), rays.end(), std::uint64_t{0}));
     eyeStage_.rays += total;
     raysSince_ += static_cast<double>(total);
+}
+
+/// An eye path and a light path for every pixel. Splats wait in their tile and are added in the order of the tiles.
+void Renderer::bidirectionalPass() {
+    const StageTimer timer(eyeStage_);
+    const SamplerKind numbers = samplerKind(request_.settings.sampler);
+    std::vector<std::uint64_t> rays(tiles(), 0);
+    std::vector<std::vector<LightSplat>> splats(tiles());
+    forTiles([&](std::size_t tile, const auto& forPixels) {
+        Bidirectional paths(scene_, camera_, context_.options, static_cast<std::uint32_t>(film_.pixels()));
+        StringSums strings;
+        forPixels([&](std::size_t pixel, const glm::vec2& corner) {
+            Sampler eye(request_.seed, pixel, film_.samples(), numbers);
+            Sampler light(request_.seed, kBidirectionalPass + film_.samples(), static_cast<std::uint32_t>(pixel), numbers);
+            const glm::vec2 jitter = eye.next2D(), lens = eye.next2D();
+            FirstHit first;
+            strings.clear();
+            const LayeredRadiance radiance =
+                paths.sample(camera_.ray(corner + jitter, lens).ray, eye, light, splats[tile], &first, film_.keepsStrings() ? &strings : nullptr);
+            film_.add(pixel, film_.samples(), radiance, first);
+        });
+        rays[tile] = paths.rays();
+    });
+    std::vector<LightSplat> all = std::move(lightSplats_);  // of a light pass before this one
+    lightSplats_.clear();
+    for (const auto& s : splats) all.insert(all.end(), s.begin(), s.end());
+    film_.addSplats(all, film_.samples());
+    film_.countSamples(1);
+    eyeStage_.rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    eyeStage_.photonsEmitted += film_.pixels();
 }
 
 double Renderer::fractionDone() const {
@@ -436,6 +515,7 @@ RenderRecord Renderer::record() const {
     r.nonfinite = film_.nonfinite();
     r.resolved = resolvedSettings(request_.settings, plan_);
     r.threads = workers_.threads();
+    if (texels_) r.texels = {texels_->texels(), static_cast<double>(plan_.texelWidth) / scene_.normalisation().scale(), texels_->extrapolated()};
     return r;
 }
 

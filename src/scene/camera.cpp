@@ -66,6 +66,11 @@ CameraRay Camera::ray(const glm::vec2& film, const glm::vec2& lens) const noexce
     return result;
 }
 
+float Camera::importance(const glm::vec3& direction, float distance) const noexcept {
+    const float cosine = glm::dot(direction, forward_);
+    return orthographic_ ? 1.0F / (pixelArea_ * cosine) : 1.0F / (pixelArea_ * cosine * cosine * cosine * distance * distance);
+}
+
 /// The pixel's value is the mean of L over its area A on the film and over the lens. With the film scaled to the
 /// plane in focus (distance F, area A F^2) and the lens point held, a film element is F^2 / cos^3 of a solid angle at
 /// the lens, so
@@ -98,9 +103,7 @@ std::optional<FilmPoint> Camera::project(const glm::vec3& point, const glm::vec2
     result.position = pixel;
     result.distance = glm::length(ray);
     result.direction = -(right_ * ray.x + up_ * ray.y + forward_ * ray.z) / result.distance;
-    const float cosine = ray.z / result.distance;
-    result.importance =
-        orthographic_ ? 1.0F / (pixelArea_ * cosine) : result.distance / (pixelArea_ * ray.z * ray.z * ray.z);
+    result.importance = importance(-result.direction, result.distance);
     if (!std::isfinite(result.importance)) return std::nullopt;
     return result;
 }

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-inline constexpr std::uint32_t kNoLight = ~0U;
+inline constexpr std::uint32_t kNoLight = Lights::kNoLight;
 
 /// A light by its kind and its place in that kind's array of Lights::Parts.
 struct LightEntry {

@@ -185,6 +185,54 @@ float Lights::pdfEnvironment(const glm::vec3& point, const glm::vec3& normal, co
     return impl_->choice.pmf(light, point, normal) * impl_->parts.environment->pdf(wi);
 }
 
+std::uint32_t Lights::lightOf(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
+    return impl_->lookup.find(geometry, primitive);
+}
+
+std::uint32_t Lights::environmentLight() const noexcept {
+    return impl_->parts.environment == nullptr ? kNoLight : static_cast<std::uint32_t>(impl_->entries.size() - 1);
+}
+
+float Lights::pdfTowards(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal, const glm::vec3& wi,
+                         float distance) const noexcept {
+    const LightEntry& entry = impl_->entries[light];
+    if (entry.kind == LightKind::Environment) return pdfEnvironment(point, normal, wi);
+    if (entry.kind != LightKind::Triangle) return belowHorizon(normal, wi) ? 0.0F : choicePmf(light, point, normal);
+    const EmissiveTriangle& t = impl_->parts.triangles[entry.index];
+    return pdfTriangle(point, normal, t.geometry, t.primitive, wi, distance);
+}
+
+float Lights::cosineAt(std::uint32_t light, const glm::vec3& direction) const noexcept {
+    const LightEntry& entry = impl_->entries[light];
+    if (entry.kind != LightKind::Triangle) return 1.0F;
+    return std::fabs(glm::dot(impl_->parts.triangles[entry.index].normal, direction));
+}
+
+EmissionPdf Lights::pdfEmission(std::uint32_t light, const glm::vec3& direction) const noexcept {
+    const LightEntry& entry = impl_->entries[light];
+    const Parts& parts = impl_->parts;
+    const auto pmf = static_cast<float>(impl_->byPower.pmf(light)), disc = static_cast<float>(impl_->discArea());
+    switch (entry.kind) {
+        case LightKind::Point:
+            return {pmf, pdfSolidAngleUniformSphere()};
+        case LightKind::Spot: {
+            const SpotEmitter& spot = parts.spots[entry.index];
+            return {pmf, spotFalloff(spot, glm::dot(spot.direction, direction)) / static_cast<float>(spotSolidAngle(spot).total())};
+        }
+        case LightKind::Triangle: {
+            const EmissiveTriangle& t = parts.triangles[entry.index];
+            const float cosine = glm::dot(t.normal, direction);
+            if (!t.twoSided && cosine <= 0.0F) return {pmf / t.area, 0.0F};
+            return {pmf / t.area, std::fabs(cosine) * kInvPi * (t.twoSided ? 0.5F : 1.0F)};
+        }
+        case LightKind::Directional:
+            return {pmf / disc, 1.0F};
+        case LightKind::Environment:
+            return {pmf / disc, parts.environment->pdf(-direction)};
+    }
+    return {};
+}
+
 void Lights::Impl::emitFromPunctual(const LightEntry& entry, const glm::vec2& u, EmissionSample& e) const noexcept {
     e.pdfPosition = 1.0F;
     e.delta = true;

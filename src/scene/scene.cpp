@@ -247,7 +247,10 @@ void Scene::Impl::buildLights() {
         std::move(parts),
         [](const void* scene, std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric, const glm::vec3& wo) {
             const auto* self = static_cast<const Impl*>(scene);
-            return self->surfaces->emittedRadiance(self->surfacePoint({geometry, primitive, barycentric.x, barycentric.y, 0.0F}), wo);
+            const SurfacePoint point = self->surfacePoint({geometry, primitive, barycentric.x, barycentric.y, 0.0F});
+            // A path that comes this way by itself meets a lamp of alpha only in this share of its tries.
+            const float coverage = self->hasAlpha[point.material] ? self->surfaces->coverage(point) : 1.0F;
+            return self->surfaces->emittedRadiance(point, wo) * coverage;
         },
         this);
 }
@@ -386,6 +389,10 @@ float Scene::visibility(const Ray& ray) const noexcept {
 }
 
 bool Scene::hasHoles() const noexcept { return impl_->anyAlpha; }
+std::array<glm::vec3, 3> Scene::corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
+    return impl_->corners(geometry, primitive);
+}
+
 const SurfaceModel& Scene::surfaces() const noexcept { return *impl_->surfaces; }
 const Lights& Scene::lights() const noexcept { return *impl_->lights; }
 const Environment* Scene::environment() const noexcept { return impl_->environment.get(); }

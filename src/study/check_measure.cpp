@@ -24,6 +24,8 @@ namespace {
             return "light";
         case Method::Reference:
             return "reference";
+        case Method::Bdpt:
+            return "bdpt";
     }
     return "?";
 }

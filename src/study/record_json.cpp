@@ -81,6 +81,8 @@ std::string methodName(Method method) {
             return "light";
         case Method::Reference:
             return "reference";
+        case Method::Bdpt:
+            return "bdpt";
     }
     return "photon";
 }
@@ -96,6 +98,10 @@ std::string recordJson(const RenderRecord& record, const RecordContext& context)
         json["nonfinite_first"] = {
             {"x", record.nonfinite.x}, {"y", record.nonfinite.y}, {"sample", record.nonfinite.sample}};
     json["error_estimate"] = record.errorEstimate;
+    if (record.texels.texels > 0)
+        json["texel_reference"] = {{"texels", record.texels.texels},
+                                   {"width_metres", record.texels.width},
+                                   {"extrapolated", record.texels.extrapolated}};
     json["interrupted"] = context.interrupted;
     json["images"] = context.images;
     return dump(json);

@@ -36,6 +36,7 @@ void Bsdf::add(const Lobe& lobe, const glm::vec3& wo) noexcept {
     const glm::vec3 local = frame_.toLocal(wo);
     visitModel(lobe, [&](const auto& model) { added.probability = lobe.weight * estimateAlbedo(model, local); });
     kinds_ = kinds_ | lobe.kind;
+    connects_ = connects_ || !lobe.delta;
 }
 
 float Bsdf::totalProbability(LobeKinds kinds) const noexcept {
@@ -90,15 +91,9 @@ float Bsdf::pdf(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds) const
     return evaluate(wo, wi, kinds, TransportMode::Flux).pdfSolidAngle;
 }
 
-std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wo, float chooseLobe, const glm::vec2& u, LobeKinds kinds,
-                                       TransportMode mode) const noexcept {
-    const float total = totalProbability(kinds);
-    const glm::vec3 local = frame_.toLocal(wo);
-    if (!(total > 0.0F) || !(local.z > 0.0F) || !sameSide(local, wo)) return std::nullopt;
-
+/// `below` receives the probability of the lobes before the chosen one.
+const Lobe* Bsdf::pickLobe(LobeKinds kinds, float target, float& below) const noexcept {
     const Lobe* chosen = nullptr;
-    float below = 0.0F;  // probability of the lobes before the chosen one
-    const float target = chooseLobe * total;
     for (int i = 0; i < count_; ++i) {
         const Lobe& lobe = lobes_[static_cast<std::size_t>(i)];
         if ((lobe.kind & kinds) == kNoLobe) continue;
@@ -106,6 +101,18 @@ std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wo, float chooseLobe, co
         chosen = &lobe;
         if (target < below + lobe.probability) break;
     }
+    return chosen;
+}
+
+std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wo, float choose, const glm::vec2& u, LobeKinds kinds,
+                                       TransportMode mode) const noexcept {
+    const float total = totalProbability(kinds);
+    const glm::vec3 local = frame_.toLocal(wo);
+    if (!(total > 0.0F) || !(local.z > 0.0F) || !sameSide(local, wo)) return std::nullopt;
+
+    float below = 0.0F;
+    const float target = choose * total;
+    const Lobe* const chosen = pickLobe(kinds, target, below);
     const float rest = std::clamp((target - below) / chosen->probability, 0.0F, kOneMinusEpsilon);
     LobeDirection direction;
     bool goesOn = false;
@@ -130,6 +137,57 @@ std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wo, float chooseLobe, co
     if (!(value.pdfSolidAngle > 0.0F)) return std::nullopt;
     result.pdfSolidAngle = value.pdfSolidAngle;
     result.weight = value.value / value.pdfSolidAngle;
+    return made;
+}
+
+/// The share of the lobes that are no delta lobes, and whether one of them lets light through.
+struct Bsdf::BlindShare {
+    float probability = 0.0F;
+    bool bothSides = false;
+
+    [[nodiscard]] float pdf(float z, Directions directions) const noexcept {
+        if (z < 0.0F && !bothSides) return 0.0F;
+        const float side = directions == Directions::Cosine ? pdfSolidAngleCosineHemisphere({0.0F, 0.0F, std::fabs(z)}) : 0.5F * kInvPi;
+        return probability * side * (bothSides ? 0.5F : 1.0F);
+    }
+};
+
+Bsdf::BlindShare Bsdf::blindShare(LobeKinds kinds) const noexcept {
+    BlindShare share;
+    const float total = totalProbability(kinds);
+    for (int i = 0; i < count_; ++i) {
+        const Lobe& lobe = lobes_[static_cast<std::size_t>(i)];
+        if ((lobe.kind & kinds) == kNoLobe || lobe.delta) continue;
+        share.probability += lobe.probability / total;
+        share.bothSides = share.bothSides || std::holds_alternative<DielectricLobe>(lobe.model);
+    }
+    return share;
+}
+
+float Bsdf::pdf(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, Directions directions) const noexcept {
+    if (directions == Directions::Bsdf) return pdf(wo, wi, kinds);
+    const glm::vec3 localI = frame_.toLocal(wi);
+    return (kinds_ & kinds) != kNoLobe && sameSide(localI, wi) ? blindShare(kinds).pdf(localI.z, directions) : 0.0F;
+}
+
+std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wo, float choose, const glm::vec2& u, LobeKinds kinds,
+                                       TransportMode mode, Directions directions) const noexcept {
+    float below = 0.0F;
+    const Lobe* const chosen = pickLobe(kinds, choose * totalProbability(kinds), below);
+    if (directions == Directions::Bsdf || chosen == nullptr || chosen->delta) return sample(wo, choose, u, kinds, mode);
+    const BlindShare share = blindShare(kinds);
+    glm::vec2 v = u;
+    const bool behind = share.bothSides && v.x >= 0.5F;
+    if (share.bothSides) v.x = std::min(2.0F * v.x - (behind ? 1.0F : 0.0F), kOneMinusEpsilon);
+    glm::vec3 local = directions == Directions::Cosine ? sampleCosineHemisphere(v) : sampleUniformHemisphere(v);
+    if (behind) local.z = -local.z;
+    std::optional<BsdfSample> made(std::in_place);
+    made->wi = frame_.toWorld(local);
+    made->pdfSolidAngle = pdf(wo, made->wi, kinds, directions);
+    if (!(made->pdfSolidAngle > 0.0F)) return std::nullopt;
+    made->weight = eval(wo, made->wi, kinds, mode) / made->pdfSolidAngle;
+    made->kind = chosen->kind;
+    made->transmitted = local.z < 0.0F;
     return made;
 }
 

@@ -135,7 +135,6 @@ IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const Gather
             WalkRay ray;
             ray.ray = Ray{origin, frame.toWorld({sine * std::cos(phi), sine * std::sin(phi), cosine}), std::numeric_limits<float>::infinity()};
             ray.absorption = point.absorption;
-            ray.mediumKnown = true;
             Cell& cell = grid.at(j, k);
             // Below the true surface no light arrives, whatever the shading normal says.
             if (glm::dot(ray.ray.direction, point.geometricNormal) > 0.0F) cell.radiance = walk.gather(ray, sampler, cell.distance);

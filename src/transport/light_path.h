@@ -12,6 +12,8 @@
 #include <pellucid/scene/scene.h>
 #include <pellucid/transport/energy.h>
 
+#include "medium.h"
+
 namespace pellucid::light_path {
 
 inline constexpr std::size_t kPathsPerChunk = 2048;
@@ -25,7 +27,6 @@ struct LightPath {
     Ray ray;
     Rgb flux{0.0F};
     Rgb absorption{0.0F};
-    bool mediumKnown = false;
     int vertices = 0;
     EnergyBalance energy = {};
     /// What the flux that the next scattering takes away goes to.
@@ -55,13 +56,10 @@ struct Arrival {
     ++path.vertices;
     const glm::vec3 wi = -path.ray.direction;
     const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wi);
-    if (!path.mediumKnown) {
-        if (bsdf.backSide() && bsdf.bordersVolume()) path.absorption = scene.surfaces().materials()[hit->point.material].absorption;
-        path.mediumKnown = true;
-    }
+    path.absorption = medium::beforeHit(scene, hit->point, bsdf, path.absorption);
     if (!isBlack(path.absorption)) {
         path.energy.absorbed += path.watts();
-        path.flux *= glm::exp(-path.absorption * hit->distance);
+        path.flux *= medium::transmittance(path.absorption, hit->distance);
         path.energy.absorbed -= path.watts();
     }
     const float geometric = std::fabs(glm::dot(wi, bsdf.geometricNormal()));
@@ -96,8 +94,7 @@ struct Arrival {
     const bool behind = glm::dot(sample->wi, a.bsdf.geometricNormal()) < 0.0F;
     path.ray = Ray{offsetOrigin(a.hit.point.position, behind ? -a.bsdf.geometricNormal() : a.bsdf.geometricNormal()), sample->wi,
                    std::numeric_limits<float>::infinity()};
-    if (sample->transmitted && a.bsdf.bordersVolume())
-        path.absorption = a.bsdf.backSide() ? Rgb(0.0F) : scene.surfaces().materials()[a.hit.point.material].absorption;
+    path.absorption = medium::afterHit(scene, a.hit.point, a.bsdf, path.absorption, sample->transmitted);
     return true;
 }
 

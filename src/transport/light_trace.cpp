@@ -10,33 +10,41 @@ using namespace light_path;
 
 namespace {
 
-/// Connects an arrival to the lens; the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]
-[[nodiscard]] std::optional<LightSplat> connect(const Scene& scene, const Camera& camera, const Arrival& a, const Rgb& flux,
-                                                const glm::vec2& lens, std::uint64_t& rays) noexcept {
+/// Connects an arrival to the lens, one splat for each kind of lobe; the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]
+[[nodiscard]] bool connect(const Scene& scene, const Camera& camera, const Arrival& a, const Rgb& flux, const glm::vec2& lens,
+                           LightPass& out) {
     const auto film = camera.project(a.hit.point.position, lens);
-    if (!film || !(film->importance > 0.0F)) return std::nullopt;
+    if (!film || !(film->importance > 0.0F)) return false;
     const glm::vec3& ng = a.bsdf.geometricNormal();
     const Rgb f = a.bsdf.eval(a.wi, film->direction, kGlossy | kDiffuse, TransportMode::Flux);
-    if (isBlack(f)) return std::nullopt;
+    if (isBlack(f)) return false;
     const float shadingOut = std::fabs(glm::dot(film->direction, a.bsdf.shadingNormal()));
     const float geometricOut = std::fabs(glm::dot(film->direction, ng));
-    if (!(shadingOut > 0.0F)) return std::nullopt;
-    ++rays;
+    if (!(shadingOut > 0.0F)) return false;
+    ++out.rays;
     const Ray shadow{offsetOrigin(a.hit.point.position, glm::dot(film->direction, ng) < 0.0F ? -ng : ng), film->direction,
                      shadowLength(film->distance)};
     const float visible = scene.visibility(shadow);
-    if (visible <= 0.0F) return std::nullopt;
+    if (visible <= 0.0F) return false;
     const int x = static_cast<int>(film->position.x), y = static_cast<int>(film->position.y);
-    if (x < 0 || y < 0 || x >= camera.width() || y >= camera.height()) return std::nullopt;
+    if (x < 0 || y < 0 || x >= camera.width() || y >= camera.height()) return false;
     const float shading = a.shading * geometricOut / shadingOut;
-    Rgb radiance = flux * f * (shading * film->importance * visible);
-    return LightSplat{static_cast<std::uint32_t>(y * camera.width() + x), radiance};
+    const Rgb scale = flux * (shading * film->importance * visible);
+    for (const LobeKinds kind : {kGlossy, kDiffuse}) {
+        const Rgb part = (a.bsdf.kinds() & kGlossy) == kNoLobe ? f : a.bsdf.eval(a.wi, film->direction, kind, TransportMode::Flux);
+        if (isBlack(part) || (a.bsdf.kinds() & kind) == kNoLobe) continue;
+        PathString path;
+        path.pass(kind);
+        path.pass(kSpecular);
+        out.splats.push_back({static_cast<std::uint32_t>(y * camera.width() + x), scale * part, path});
+    }
+    return true;
 }
 
 }  // namespace
 
 LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide, const PhotonPassKey& key,
-                          const Workers& workers) {
+                          const Workers& workers, const VisibleCells* looked) {
     const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
     const auto chunks = inChunks<LightPass>(key.paths, workers, [&](std::uint32_t index, LightPass& out) {
         Sampler sampler(key.seed, key.pass, index);
@@ -51,11 +59,13 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
             if (!a) break;
             path.sink = (a->bsdf.kinds() & (kGlossy | kDiffuse)) != kNoLobe ? &EnergyBalance::left : &EnergyBalance::absorbed;
             if (path.vertices > 1 && (a->bsdf.kinds() & (kGlossy | kDiffuse)) != kNoLobe) {
-                if (const auto splat = connect(scene, camera, *a, path.flux * perPath, lens, out.rays)) {
-                    out.splats.push_back(*splat);
-                    path.sink = &EnergyBalance::stored;
-                    arrived += luminance(path.flux);
-                }
+                const bool kept = looked != nullptr && (a->bsdf.kinds() & kDiffuse) != kNoLobe;
+                const bool splatted = connect(scene, camera, *a, path.flux * perPath, lens, out);
+                if (splatted) path.sink = &EnergyBalance::stored;
+                if (splatted || (kept && looked->seen(a->hit.point.position))) arrived += luminance(path.flux);
+                if (kept)
+                    out.arrivals.push_back({a->hit.point.geometry, a->hit.point.primitive, a->hit.point.barycentric, a->bsdf.backSide(),
+                                            std::min(1.0F, std::fabs(glm::dot(a->wi, a->bsdf.shadingNormal()))), path.flux * (a->shading * perPath)});
             }
             if (!scatter(scene, path, *a, kSpecular, sampler)) break;
         }
@@ -70,6 +80,7 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
     pass.emitted = key.paths;
     for (const LightPass& c : chunks) {
         pass.splats.insert(pass.splats.end(), c.splats.begin(), c.splats.end());
+        append(pass.arrivals, c.arrivals);
         pass.useful.insert(pass.useful.end(), c.useful.begin(), c.useful.end());
         pass.rays += c.rays;
         pass.energy.add(c.energy);

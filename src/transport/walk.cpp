@@ -1,5 +1,6 @@
 #include <pellucid/transport/walk.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -7,6 +8,8 @@
 #include <pellucid/transport/caustic_map.h>
 #include <pellucid/transport/irradiance_cache.h>
 #include <pellucid/transport/radiance_map.h>
+
+#include "medium.h"
 
 namespace pellucid {
 
@@ -20,10 +23,6 @@ constexpr std::uint64_t kFirstDimension = 2, kDimensionsPerVertex = 8;
 enum VertexDimension : std::uint64_t { kCoin, kLightChoice, kLightPoint, kLobeChoice, kLobePoint, kKindChoice, kRoulette, kCorner };
 /// Near a corner the map's blur would show: a gather ray shorter than u x this many look-up radii goes on instead.
 constexpr float kCornerRadii = 8.0F;
-
-[[nodiscard]] Rgb transmittance(const Rgb& absorption, float distance) noexcept {
-    return {std::exp(-absorption.r * distance), std::exp(-absorption.g * distance), std::exp(-absorption.b * distance)};
-}
 
 }  // namespace
 
@@ -49,11 +48,10 @@ struct Walk::State {
     int vertices = 0;
     bool gathering = false;          ///< behind the first D vertex: the global map may answer
     bool causticServed = false;      ///< at this D vertex: what comes over S alone is counted
-    bool straight = true;            ///< the eye saw its first X vertex without any S before it
 
     /// Whether a lamp that is met now belongs to path tracing.
-    [[nodiscard]] bool lampCounts(bool leaveCaustics) const noexcept {
-        if (leaveCaustics && straight && ledger.atLight() == PathClass::Caustic) return false;
+    [[nodiscard]] bool lampCounts(const LeftClasses& left) const noexcept {
+        if (left.has(ledger.path())) return false;
         if (chainEmpty) return !skipDirect;
         return behind != Behind::CausticMapped || !chainSpecular;
     }
@@ -74,25 +72,37 @@ float Walk::misWeight(float mine, float other) const noexcept {
     return context_.options.powerHeuristic ? 1.0F / (1.0F + ratio * ratio) : 1.0F / (1.0F + ratio);
 }
 
+float Walk::hitWeight(float pdfSampled, float pdfLight) const noexcept {
+    switch (context_.options.lights) {
+        case LightStrategy::Chance:
+            return 1.0F;
+        case LightStrategy::NextEvent:
+            return pdfLight > 0.0F ? 0.0F : 1.0F;
+        case LightStrategy::Both:
+            break;
+    }
+    return misWeight(pdfSampled, pdfLight);
+}
+
 void Walk::addEscaped(State& state) const noexcept {
     const Environment* environment = context_.scene.environment();
-    if (environment == nullptr || !state.lampCounts(context_.options.leaveCaustics)) return;
+    if (environment == nullptr || !state.lampCounts(context_.options.left)) return;
     float weight = 1.0F;
     if (state.lampSampled)
-        weight = misWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
-    state.radiance[state.ledger.atLight()] += state.throughput * environment->radiance(state.ray.ray.direction) * weight;
+        weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
+    state.radiance.add(state.ledger.path(), state.throughput * environment->radiance(state.ray.ray.direction) * weight);
 }
 
 void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
-    if (!state.lampCounts(context_.options.leaveCaustics)) return;
+    if (!state.lampCounts(context_.options.left)) return;
     const Rgb emitted = context_.scene.surfaces().emittedRadiance(hit.point, -state.ray.ray.direction);
     if (isBlack(emitted)) return;
     float weight = 1.0F;
     if (state.lampSampled)
-        weight = misWeight(state.pdfSolidAngle,
+        weight = hitWeight(state.pdfSolidAngle,
                            context_.scene.lights().pdfTriangle(state.lightPoint, state.lightNormal, hit.point.geometry, hit.point.primitive,
                                                                state.ray.ray.direction, hit.distance));
-    state.radiance[state.ledger.atLight()] += state.throughput * emitted * weight;
+    state.radiance.add(state.ledger.path(), state.throughput * emitted * weight);
 }
 
 /// Hands the D lobe to the maps. Returns kDiffuse when path tracing has to carry it on.
@@ -108,12 +118,14 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
             const float u = sampler.next1D();
             const bool nearCorner = found && state.chainEmpty && vertex.hit.distance < u * kCornerRadii * found->radius;
             if (found && !nearCorner) {
-                state.radiance[PathClass::Indirect] += state.throughput * outgoing * found->irradiance;
+                state.radiance.add(state.ledger.pathAfter(kDiffuse).open(), state.throughput * outgoing * found->irradiance);
                 return kNoLobe;
             }
             // Near a corner all but the caustics, which path tracing hardly finds, goes on.
             if (found && maps.caustic != nullptr) {
-                state.radiance[PathClass::Indirect] += state.throughput * outgoing * found->caustic;
+                PathString path = state.ledger.pathAfter(kDiffuse);
+                path.pass(kSpecular);
+                state.radiance.add(path, state.throughput * outgoing * found->caustic);
                 state.causticServed = true;
             }
         }
@@ -124,12 +136,13 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         state.causticServed = true;
         if (first != nullptr && state.vertices == 1) first->kernelRadius = radius;
         const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius);
-        state.radiance[state.ledger.atLightAfter(false) == PathClass::Direct ? PathClass::Caustic : PathClass::Indirect] +=
-            state.throughput * outgoing * irradiance;
+        PathString path = state.ledger.pathAfter(kDiffuse);
+        path.pass(kSpecular);
+        state.radiance.add(path, state.throughput * outgoing * irradiance);
     }
     if (maps.cache != nullptr) {
         if (const auto cached = maps.cache->lookup(position, normal)) {
-            state.radiance[PathClass::Indirect] += state.throughput * outgoing * cached->through(lobe);
+            state.radiance.add(state.ledger.pathAfter(kDiffuse).open(), state.throughput * outgoing * cached->through(lobe));
             return kNoLobe;
         }
         ++cacheMisses_;  // gathers once: the walk simply goes on
@@ -144,40 +157,42 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     const glm::vec3& position = vertex.hit.point.position;
     const auto light = context_.scene.lights().sample(position, vertex.lightNormal, choice, u);
     if (!light || !(light->pdfSolidAngle > 0.0F)) return;
-    LayeredRadiance sum;
-    if (kinds == sampled && (kinds & (kinds - 1)) == 0) {
+    const bool weighted = context_.options.lights == LightStrategy::Both && !light->delta;
+    std::array<Rgb, 3> sum{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};  // by kind
+    if (kinds == sampled && (kinds & (kinds - 1)) == 0 && context_.options.directions == Directions::Bsdf) {
         // One kind of lobe, which is sampled too: value and density in one go.
         const BsdfValue v = vertex.bsdf.evaluate(vertex.wo, light->wi, kinds, TransportMode::Radiance);
-        sum[state.ledger.atLightAfter(kinds == kSpecular)] = v.value * misWeight(light->pdfSolidAngle, light->delta ? 0.0F : v.pdfSolidAngle);
+        sum[kinds == kSpecular ? 0U : kinds == kGlossy ? 1U : 2U] = v.value * misWeight(light->pdfSolidAngle, weighted ? v.pdfSolidAngle : 0.0F);
     } else {
-        const float pdfSampled = light->delta ? 0.0F : vertex.bsdf.pdf(vertex.wo, light->wi, sampled);
+        const float pdfSampled = weighted ? vertex.bsdf.pdf(vertex.wo, light->wi, sampled, context_.options.directions) : 0.0F;
         const float shared = misWeight(light->pdfSolidAngle, pdfSampled);
-        for (const LobeKinds kind : {kSpecular, kGlossy, kDiffuse}) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto kind = static_cast<LobeKinds>(1U << i);
             if ((kinds & kind) == kNoLobe) continue;
             const Rgb f = vertex.bsdf.eval(vertex.wo, light->wi, kind, TransportMode::Radiance);
-            if (!isBlack(f)) sum[state.ledger.atLightAfter(kind == kSpecular)] += f * ((sampled & kind) != kNoLobe ? shared : 1.0F);
+            if (!isBlack(f)) sum[i] = f * ((sampled & kind) != kNoLobe ? shared : 1.0F);
         }
     }
-    const Rgb total = sum.total();
-    if (isBlack(total)) return;
+    if (isBlack(sum[0] + sum[1] + sum[2])) return;
     const glm::vec3& ng = vertex.bsdf.geometricNormal();
     const Ray shadow = shadowRay(position, glm::dot(light->wi, ng) >= 0.0F ? ng : -ng, light->wi, light->distance);
     ++rays_;
     const float visible = shadow.tMax > 0.0F ? context_.scene.visibility(shadow) : 1.0F;
     if (visible <= 0.0F) return;
     Rgb arriving = light->radiance * (visible / light->pdfSolidAngle);
-    if (!isBlack(state.ray.absorption)) arriving *= transmittance(state.ray.absorption, std::min(light->distance, 1e6F));
-    for (int c = 0; c < kPathClasses; ++c) {
-        const auto index = static_cast<std::size_t>(c);
-        state.radiance.layer[index] += state.throughput * arriving * sum.layer[index];
-    }
+    const bool through = glm::dot(light->wi, ng) < 0.0F;
+    arriving *= medium::transmittance(
+        medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, through), light->distance);
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!isBlack(sum[i]))
+            state.radiance.add(state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)), state.throughput * arriving * sum[i]);
 }
 
 /// Samples the next direction among `sampled` lobes, with roulette. False: the walk ends.
 bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
     const float chooseLobe = sampler.next1D();
     const glm::vec2 u = sampler.next2D();
-    const auto sample = vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance);
+    const auto sample = vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance, context_.options.directions);
     if (!sample) return false;
     LobeKinds kind = sample->kind;
     Rgb weight = sample->weight;
@@ -202,8 +217,7 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     state.throughput *= weight;
     state.etaScale *= sample->etaScale;
     const bool casts = kind == kSpecular;
-    if (casts && state.ledger.atLight() == PathClass::Emission) state.straight = false;
-    state.ledger.pass(casts);
+    state.ledger.pass(kind);
     if (kind == kDiffuse) {
         state.behind = state.causticServed ? Behind::CausticMapped : Behind::PathTraced;
         state.chainEmpty = state.chainSpecular = true;
@@ -219,10 +233,8 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     const glm::vec3& ng = vertex.bsdf.geometricNormal();
     const bool behindSurface = glm::dot(sample->wi, ng) < 0.0F;
     state.ray.ray = Ray{offsetOrigin(vertex.hit.point.position, behindSurface ? -ng : ng), sample->wi, std::numeric_limits<float>::infinity()};
-    if (sample->transmitted && vertex.bsdf.bordersVolume()) {
-        state.ray.absorption = vertex.bsdf.backSide() ? Rgb(0.0F) : context_.scene.surfaces().materials()[vertex.hit.point.material].absorption;
-        state.ray.mediumKnown = true;
-    }
+    state.ray.absorption =
+        medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, sample->transmitted);
     const float threshold = context_.options.rouletteThreshold;
     float survive = threshold > 0.0F ? std::min(1.0F, maxComponent(state.throughput) * state.etaScale / threshold) : 1.0F;
     if (state.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
@@ -250,11 +262,8 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     state.pathLength += hit->distance;
     const glm::vec3 wo = -state.ray.ray.direction;
     const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo);
-    if (!state.ray.mediumKnown) {
-        if (bsdf.backSide() && bsdf.bordersVolume()) state.ray.absorption = context_.scene.surfaces().materials()[hit->point.material].absorption;
-        state.ray.mediumKnown = true;
-    }
-    if (!isBlack(state.ray.absorption)) state.throughput *= transmittance(state.ray.absorption, hit->distance);
+    state.ray.absorption = medium::beforeHit(context_.scene, hit->point, bsdf, state.ray.absorption);
+    state.throughput *= medium::transmittance(state.ray.absorption, hit->distance);
     if (trace_ != nullptr) write(state, &*hit, &bsdf);
     addEmitted(state, *hit);
     const bool transmits = context_.scene.surfaces().materials()[hit->point.material].transmission > 0.0F;
@@ -278,8 +287,9 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     }
     // S lobes behind a mapped receiver are the caustic map's, the whole chain long.
     const bool chainMapped = state.behind == Behind::CausticMapped && state.gathering && state.chainSpecular;
-    const bool left = context_.options.leaveCaustics && state.straight && state.ledger.atLightAfter(true) == PathClass::Caustic;
+    const bool left = context_.options.left.has(state.ledger.pathAfter(kSpecular));
     if (chainMapped || left) direct = direct & (kGlossy | kDiffuse);
+    if (context_.options.lights == LightStrategy::Chance) direct = static_cast<LobeKinds>(direct & ~static_cast<unsigned>(sampled));
     sampler.setDimension(dimension + kLightChoice);
     if (direct != kNoLobe) addDirect(state, vertex, direct, sampled, sampler);
     if (sampled == kNoLobe) return false;
@@ -314,9 +324,10 @@ void Walk::run(State& state, Sampler& sampler, FirstHit* first, float* firstDist
     while (step(state, sampler, first, firstDistance)) {}
 }
 
-LayeredRadiance Walk::fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first) noexcept {
+LayeredRadiance Walk::fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first, StringSums* strings) noexcept {
     State state;
     state.ray = ray;
+    state.radiance.strings = strings;
     run(state, sampler, first, nullptr);
     return state.radiance;
 }
@@ -327,7 +338,7 @@ Rgb Walk::gather(const WalkRay& ray, Sampler& sampler, float& distance) noexcept
     state.gathering = true;
     state.skipDirect = true;
     state.behind = context_.maps.caustic != nullptr ? Behind::CausticMapped : Behind::PathTraced;
-    state.ledger.pass(false);
+    state.ledger.pass(kDiffuse);
     run(state, sampler, nullptr, &distance);
     return state.radiance.total();
 }

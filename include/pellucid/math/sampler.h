@@ -1,6 +1,7 @@
-/// Low-discrepancy numbers keyed by (seed, stream, index, dimension): no state is shared between threads, so the same key
+/// Numbers keyed by (seed, stream, index, dimension): no state is shared between threads, so the same key
 /// gives the same number in any order. A stream is a pixel (index = sample) or a photon pass (index = photon path).
-/// Padded two-dimensional Sobol points with hash-based Owen scrambling and an Owen-scrambled index. [Burley2020]
+/// The default: padded two-dimensional Sobol points with hash-based Owen scrambling and an Owen-scrambled index
+/// [Burley2020]. The others show what that is worth; all are unbiased.
 #pragma once
 
 #include <bit>
@@ -12,13 +13,18 @@
 
 namespace pellucid {
 
+/// Independent: hashed. Stratified: each block of 16 indices has one jittered number in each of 4 x 4 (16) strata. Halton:
+/// a prime base a dimension with Owen-scrambled digits, hashed numbers beyond the last prime. [Owen1995]
+enum class SamplerKind : std::uint8_t { Sobol, Independent, Stratified, Halton };
+
 class Sampler {
 public:
-    Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t index) noexcept
-        : key_(hashCombine(seed, stream)), index_(index) {}
+    Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t index, SamplerKind kind = SamplerKind::Sobol) noexcept
+        : key_(hashCombine(seed, stream)), index_(index), kind_(kind) {}
 
     /// A point of a (0,2)-sequence in [0,1)^2.
     [[nodiscard]] glm::vec2 next2D() noexcept {
+        if (kind_ != SamplerKind::Sobol) return other2D();
         const std::uint64_t seed = hash64(key_ + 0x9e3779b97f4a7c15ULL * ++dimension_);
         const auto low = static_cast<std::uint32_t>(seed), high = static_cast<std::uint32_t>(seed >> 32U);
         const std::uint32_t index = reverse(laineKarras(reverse(index_), low ^ (high << 7U)));
@@ -26,6 +32,7 @@ public:
     }
 
     [[nodiscard]] float next1D() noexcept {
+        if (kind_ != SamplerKind::Sobol) return other1D();
         const std::uint64_t seed = hash64(key_ + 0x9e3779b97f4a7c15ULL * ++dimension_);
         const auto low = static_cast<std::uint32_t>(seed), high = static_cast<std::uint32_t>(seed >> 32U);
         const std::uint32_t index = reverse(laineKarras(reverse(index_), high));
@@ -36,6 +43,9 @@ public:
     void setDimension(std::uint64_t dimension) noexcept { dimension_ = dimension; }
 
 private:
+    [[nodiscard]] glm::vec2 other2D() noexcept;
+    [[nodiscard]] float other1D() noexcept;
+
     [[nodiscard]] static constexpr std::uint32_t reverse(std::uint32_t x) noexcept {
         x = __builtin_bswap32(x);
         x = ((x & 0x0f0f0f0fU) << 4U) | ((x >> 4U) & 0x0f0f0f0fU);
@@ -70,6 +80,7 @@ private:
     std::uint64_t key_;
     std::uint32_t index_;
     std::uint64_t dimension_ = 0;
+    SamplerKind kind_;
 };
 
 }  // namespace pellucid

@@ -2,8 +2,10 @@
 /// the number of threads. Two interleaved halves of the samples tell how far the mean still is from its limit.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pellucid/math/image.h>
@@ -18,9 +20,13 @@ class Film {
 public:
     Film(int width, int height);
 
+    /// Keeps radiance by path string, too, for a scene of these lobes (layer "classes"). Before the first sample.
+    void keepStrings(LobeKinds kinds);
+    [[nodiscard]] bool keepsStrings() const noexcept { return !stringSlots_.empty(); }
+
     /// Adds a sample of `pixel`. Values that are not finite are counted and left out. Only the thread that owns the pixel.
     void add(std::size_t pixel, std::uint32_t sample, const LayeredRadiance& radiance, const FirstHit& first) noexcept;
-    /// Adds splats of the caustic class, in their order. `pass` counts light passes.
+    /// Adds the splats of a light pass, in their order. `pass` counts light passes.
     void addSplats(const std::vector<LightSplat>& splats, std::uint32_t pass) noexcept;
     /// Tells that every pixel has got one more sample (splats count apart).
     void countSamples(std::uint32_t samples) noexcept { samples_ += samples; }
@@ -35,7 +41,7 @@ public:
     /// Root of the relmse of the mean, estimated from its two halves (noise only, not bias).
     [[nodiscard]] double relativeError() const noexcept;
     /// Of the mean so far, all classes.
-    [[nodiscard]] double luminance(int x, int y) const noexcept;
+    [[nodiscard]] double luminanceAt(int x, int y) const noexcept;
     [[nodiscard]] double meanLuminance() const noexcept;
     [[nodiscard]] NonFinite nonfinite() const noexcept;
 
@@ -48,17 +54,27 @@ private:
     struct Pixel {
         double layer[kPathClasses][3] = {};
         double half[3] = {};          ///< samples with odd index
-        double splat[3] = {};
+        double splat[kPathClasses][3] = {};
         double splatHalf[3] = {};
-        double square = 0.0;          ///< of the luminance
+        double square = 0.0;          ///< of the luminance of samples
+        double splatSquare = 0.0;     ///< of the luminance of a pass's splats
+        float splatPass = 0.0F;       ///< while a pass is added
         float albedo[3] = {}, normal[3] = {};
         float depth = 0.0F, radius = 0.0F;
         std::uint32_t nonfinite = 0, firstNonfinite = 0;
     };
     [[nodiscard]] Rgb mean(const Pixel& p, int layer) const noexcept;
+    [[nodiscard]] double variance(const Pixel& p) const noexcept;
+    [[nodiscard]] std::size_t savedSize() const noexcept;
+    [[nodiscard]] double stringMean(std::size_t slot, std::size_t pixel, std::size_t channel) const noexcept;
+    /// Strings that have radiance somewhere, as (slot, name).
+    [[nodiscard]] std::vector<std::pair<std::size_t, std::string>> litStrings() const;
     int width_, height_;
     std::uint32_t samples_ = 0, splatPasses_ = 0;
     std::vector<Pixel> pixels_;
+    std::vector<PathString> stringSlots_;        ///< empty: not kept
+    std::array<std::int16_t, PathString::kCodes> slotOf_{};
+    std::vector<double> strings_, splatStrings_; ///< sums, by slot, pixel, channel
 };
 
 /// Names that --layers takes beyond the four that are always there.

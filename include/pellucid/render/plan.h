@@ -40,6 +40,8 @@ struct Plan {
     int gatherRays = 128;                ///< a record, in the first generation
     bool growPhotons = true, growRays = true;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
+    bool bidirectional = false;          ///< eye paths meet light paths
+    float texelWidth = 0.0F;             ///< of the texel irradiance, scene units; 0: off
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;
     std::vector<std::string> blindSpots;

@@ -20,7 +20,7 @@ namespace pellucid {
 
 class Scene;
 
-enum class Method { Photon, Path, Light, Reference };
+enum class Method { Photon, Path, Light, Reference, Bdpt };
 
 /// The first of the limits that is reached ends the render. All empty: error 0.05 with the plan's cap on time.
 struct Budget {
@@ -70,7 +70,15 @@ struct NonFinite {
     std::uint32_t sample = 0;
 };
 
+/// How caustics seen in mirrors and through glass were made for a reference.
+struct TexelReport {
+    std::size_t texels = 0;                 ///< 0: they were not
+    double width = 0.0;                     ///< of the coarse ones, metres
+    double extrapolated = 0.0;              ///< relative change of that class by extrapolating the texels' width to 0
+};
+
 struct RenderRecord {
+    TexelReport texels;
     std::vector<Decision> decisions;
     std::vector<std::string> blindSpots;    ///< path classes that this method cannot see in this scene
     std::vector<StageRecord> stages;

@@ -16,6 +16,9 @@ namespace pellucid {
 struct Settings {
     // path tracing
     std::string misHeuristic = "power";     ///< path.mis: balance | power
+    std::string directions = "bsdf";        ///< path.directions: uniform | cosine | bsdf
+    std::string lightStrategy = "mis";      ///< path.lights: none | nee | mis
+    std::string sampler = "sobol";          ///< path.sampler: independent | stratified | halton | sobol
     double rouletteThreshold = 1.0;         ///< path.roulette: throughput below which Russian roulette may end a path; 0: never
     int maxDepth = 0;                       ///< path.max_depth: number of surface vertices; 0: no limit
     // surfaces
@@ -27,6 +30,8 @@ struct Settings {
     double alpha = 2.0 / 3.0;               ///< photon.alpha: radius reduction
     std::string guiding = "auto";           ///< photon.guiding: auto | on | off
     std::string causticMap = "auto";        ///< photon.caustic_map: auto | on | off
+    // reference
+    double texelWidth = 1.0;                ///< reference.texel: in pixel footprints; 0: off
     // irradiance cache and gather
     std::string cache = "auto";             ///< cache.mode: auto | on | off
     double cacheError = -1.0;               ///< cache.error: Ward's a

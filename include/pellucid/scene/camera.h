@@ -56,6 +56,10 @@ public:
     /// beta * f * c * importance to the pixel (radiance, W m^-2 sr^-1), for one emitted path; divide by their number.
     [[nodiscard]] std::optional<FilmPoint> project(const glm::vec3& point, const glm::vec2& lens) const noexcept;
 
+    /// FilmPoint::importance of a point at `distance` along a camera ray of direction `direction`. Times the cosine at
+    /// the point it is the density per area with which the rays of that pixel reach it.
+    [[nodiscard]] float importance(const glm::vec3& direction, float distance) const noexcept;
+
     [[nodiscard]] glm::vec3 position() const noexcept { return origin_; }
     [[nodiscard]] glm::vec3 forward() const noexcept { return forward_; }
 

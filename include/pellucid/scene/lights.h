@@ -65,6 +65,12 @@ struct EmissionSample {
     bool delta = false;  ///< point, spot, directional
 };
 
+/// Densities with which sampleEmission() starts a path: of its point (per area, with the choice of the light; of a point
+/// light the choice alone, from infinity per area of the disc) and of its direction (per solid angle; 1 for directional).
+struct EmissionPdf {
+    float position = 0.0F, direction = 0.0F;
+};
+
 /// Five numbers in [0,1) that make an emission: the primary sample space that emission guiding works in.
 struct EmissionNumbers {
     float chooseLight = 0.0F;
@@ -119,6 +125,20 @@ public:
                                     std::uint32_t primitive, const glm::vec3& wi, float distance) const noexcept;
     [[nodiscard]] float pdfEnvironment(const glm::vec3& point, const glm::vec3& normal,
                                        const glm::vec3& wi) const noexcept;
+
+    /// The light that an emissive triangle is; kNoLight where it emits nothing.
+    static constexpr std::uint32_t kNoLight = ~0U;
+    [[nodiscard]] std::uint32_t lightOf(std::uint32_t geometry, std::uint32_t primitive) const noexcept;
+    /// The environment's light; kNoLight without one.
+    [[nodiscard]] std::uint32_t environmentLight() const noexcept;
+    /// pdfSolidAngle of a sample() from (point, normal) of `light` in direction `wi`, at `distance`; of a delta light the
+    /// probability of its choice.
+    [[nodiscard]] float pdfTowards(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal, const glm::vec3& wi,
+                                   float distance) const noexcept;
+    /// |cos| between the normal of `light` and a direction; 1 for lights without a surface.
+    [[nodiscard]] float cosineAt(std::uint32_t light, const glm::vec3& direction) const noexcept;
+    /// Densities of sampleEmission() for light that leaves `light` in `direction`.
+    [[nodiscard]] EmissionPdf pdfEmission(std::uint32_t light, const glm::vec3& direction) const noexcept;
 
     /// Emission with lights chosen by power.
     [[nodiscard]] std::optional<EmissionSample> sampleEmission(const EmissionNumbers& u) const noexcept;

@@ -2,6 +2,7 @@
 /// occlusion, surface attributes and light queries; the only thing that transport sees of the world.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -55,6 +56,9 @@ public:
 
     /// Transmittance by alpha between the ray's origin and tMax: 0 blocked by anything opaque (glass blocks too).
     [[nodiscard]] float visibility(const Ray& ray) const noexcept;
+
+    /// The corners of a triangle, as they stand in the normalised scene.
+    [[nodiscard]] std::array<glm::vec3, 3> corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept;
 
     [[nodiscard]] const SurfaceModel& surfaces() const noexcept;
     [[nodiscard]] const Lights& lights() const noexcept;

@@ -32,6 +32,10 @@ struct LobeRules {
     float deltaAlpha = 1e-3F;    ///< below this GGX alpha a lobe is an exact delta lobe
 };
 
+/// How directions are drawn: in proportion to the lobes, or blind to them by the cosine or uniformly (over both sides where
+/// light may pass). Delta lobes keep their share and their direction. For showing what each is worth.
+enum class Directions : std::uint8_t { Bsdf, Cosine, Uniform };
+
 struct BsdfSample {
     glm::vec3 wi{0.0F};
     Rgb weight{0.0F};            ///< f |cos| / pdf of the sampled set of lobes (for a delta lobe: its limit)
@@ -140,7 +144,14 @@ public:
     [[nodiscard]] std::optional<BsdfSample> sample(const glm::vec3& wo, float chooseLobe, const glm::vec2& u,
                                                    LobeKinds kinds, TransportMode mode) const noexcept;
 
+    /// sample() and pdf() with directions that are blind to the lobes; Directions::Bsdf is the same as those.
+    [[nodiscard]] std::optional<BsdfSample> sample(const glm::vec3& wo, float chooseLobe, const glm::vec2& u, LobeKinds kinds,
+                                                   TransportMode mode, Directions directions) const noexcept;
+    [[nodiscard]] float pdf(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, Directions directions) const noexcept;
+
     [[nodiscard]] LobeKinds kinds() const noexcept { return kinds_; }
+    /// Whether some lobe has a value for a given pair of directions: not all of them are delta lobes.
+    [[nodiscard]] bool connects() const noexcept { return connects_; }
     /// The diffuse lobe scaled by its weight; reflectance 0 when there is none.
     [[nodiscard]] const DiffuseLobe& diffuse() const noexcept { return diffuse_; }
     /// Estimated directional albedo for wo of the lobes in `kinds` (a guide for roulette, not exact).
@@ -162,6 +173,9 @@ public:
 private:
     static constexpr int kMaxLobes = 4;
     [[nodiscard]] float totalProbability(LobeKinds kinds) const noexcept;
+    [[nodiscard]] const Lobe* pickLobe(LobeKinds kinds, float target, float& below) const noexcept;
+    struct BlindShare;
+    [[nodiscard]] BlindShare blindShare(LobeKinds kinds) const noexcept;
     [[nodiscard]] bool sameSide(const glm::vec3& local, const glm::vec3& world) const noexcept;
     void evaluateLocal(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, TransportMode mode,
                        BsdfValue& sum) const noexcept;
@@ -171,6 +185,7 @@ private:
     std::array<Lobe, kMaxLobes> lobes_;
     int count_ = 0;
     LobeKinds kinds_ = kNoLobe;
+    bool connects_ = false;
     bool backSide_, bordersVolume_;
 };
 

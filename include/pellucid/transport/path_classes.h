@@ -12,21 +12,100 @@
 ///   over S and at least one G   E (S|G)* D S* G (S|G)* L  path tracing inside the gather
 ///   over another D vertex y     E (S|G)* D (S|G)* D ...   irradiance cache / gather; at y the global map (all photons)
 /// A pass that the plan leaves out hands its class back to path tracing, never to nothing.
+///
+/// Beyond the four layers every path has a class of its own, its string of vertices read from the eye: a run of S is one
+/// letter, G and D are one each, at most three letters; what goes on after them ends the string with _ (PathString).
+/// E S+ D S+ L is "ESDSL", E D D D D L is "EDDD_L". The photon method knows of light that its cache or map returns only
+/// what stands before the receiver: its share of E p D ... L, without E p D L and E p D S+ L, stands in "EpD_L".
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <pellucid/math/rgb.h>
+#include <pellucid/surface/bsdf.h>
 
 namespace pellucid {
 
 enum class PathClass : std::uint8_t { Emission, Direct, Caustic, Indirect };
 inline constexpr int kPathClasses = 4;
 
+/// The string of a path's vertices, in seven bits: three letters of two bits (first letter lowest) and "goes on".
+class PathString {
+public:
+    static constexpr int kCodes = 128;
+
+    constexpr PathString() noexcept = default;
+    constexpr bool operator==(const PathString&) const noexcept = default;
+    constexpr explicit PathString(std::uint8_t code) noexcept : code_(code) {}
+
+    /// The path goes over one more vertex by a lobe of this kind (exactly one bit).
+    constexpr void pass(LobeKinds kind) noexcept {
+        if ((code_ & kOn) != 0) return;
+        const unsigned letter = kind == kSpecular ? kS : kind == kGlossy ? kG : kD;
+        unsigned place = 0;
+        while (place < 3 && (code_ >> (2 * place) & 3U) != 0) ++place;
+        if (letter == kS && place > 0 && (code_ >> (2 * place - 2) & 3U) == kS) return;
+        code_ = static_cast<std::uint8_t>(place < 3 ? code_ | letter << (2 * place) : code_ | kOn);
+    }
+    /// The same with everything behind it left open.
+    [[nodiscard]] constexpr PathString open() const noexcept { return PathString(static_cast<std::uint8_t>(code_ | kOn)); }
+
+    [[nodiscard]] constexpr std::uint8_t code() const noexcept { return code_; }
+    /// "EDSL", "ED_L".
+    [[nodiscard]] std::string name() const;
+
+    /// The layer of a path whose vertices are these.
+    [[nodiscard]] constexpr PathClass layer() const noexcept {
+        unsigned rest = code_;
+        if ((rest & 3U) == kS) rest >>= 2U;  // (the flag "goes on" moves, too, but is never 0 afterwards)
+        if (rest == 0) return PathClass::Emission;
+        if (rest <= kD) return PathClass::Direct;
+        return rest == (kG | kS << 2U) || rest == (kD | kS << 2U) ? PathClass::Caustic : PathClass::Indirect;
+    }
+
+private:
+    static constexpr unsigned kS = 1, kG = 2, kD = 3, kOn = 64;
+    std::uint8_t code_ = 0;
+};
+
+/// The string over these kinds of lobes, from the eye.
+[[nodiscard]] constexpr PathString stringOver(std::initializer_list<LobeKinds> kinds) noexcept {
+    PathString path;
+    for (const LobeKinds kind : kinds) path.pass(kind);
+    return path;
+}
+
+/// Classes that another estimator carries: a walk adds nothing to them.
+struct LeftClasses {
+    bool caustics = false;       ///< E X S+ L: light tracing
+    bool seenCaustics = false;   ///< E S+ D S+ L: texel irradiance
+
+    [[nodiscard]] constexpr bool has(PathString path) const noexcept {
+        if (caustics && (path == stringOver({kDiffuse, kSpecular}) || path == stringOver({kGlossy, kSpecular}))) return true;
+        return seenCaustics && path == stringOver({kSpecular, kDiffuse, kSpecular});
+    }
+};
+
+/// Every string that a path over lobes of these kinds can have, by code.
+[[nodiscard]] std::vector<PathString> possibleStrings(LobeKinds kinds);
+
+/// Radiance of one sample by path string; only kept when somebody asks for it.
+using StringSums = std::vector<std::pair<PathString, Rgb>>;
+
 /// Radiance by path class; their sum is the pixel.
 struct LayeredRadiance {
     std::array<Rgb, kPathClasses> layer{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};
+    StringSums* strings = nullptr;  ///< not owned; receives the same radiance by string
+
+    void add(PathString path, const Rgb& radiance) {
+        (*this)[path.layer()] += radiance;
+        if (strings != nullptr) strings->emplace_back(path, radiance);
+    }
 
     [[nodiscard]] Rgb& operator[](PathClass c) noexcept { return layer[static_cast<std::size_t>(c)]; }
     [[nodiscard]] const Rgb& operator[](PathClass c) const noexcept { return layer[static_cast<std::size_t>(c)]; }
@@ -36,27 +115,22 @@ struct LayeredRadiance {
 /// Reads a path's vertices from the eye on.
 class EyeLedger {
 public:
-    /// The path goes over a vertex by a lobe that casts caustics (S) or not (X).
-    void pass(bool casts) noexcept {
-        if (casts)
-            state_ = state_ == State::DirectReceiver ? State::CausticChain : state_;
-        else
-            state_ = state_ == State::Eye ? State::DirectReceiver : State::Other;
-    }
+    /// The path goes over a vertex by a lobe of this kind.
+    void pass(LobeKinds kind) noexcept { path_.pass(kind); }
 
-    /// The class if the path ends at a light now.
-    [[nodiscard]] PathClass atLight() const noexcept { return static_cast<PathClass>(state_); }
-    /// The class if it goes over one more vertex and then ends at a light.
-    [[nodiscard]] PathClass atLightAfter(bool casts) const noexcept {
-        EyeLedger next = *this;
-        next.pass(casts);
-        return next.atLight();
+    [[nodiscard]] PathString path() const noexcept { return path_; }
+    [[nodiscard]] PathString pathAfter(LobeKinds kind) const noexcept {
+        PathString next = path_;
+        next.pass(kind);
+        return next;
     }
+    /// The class if the path ends at a light now.
+    [[nodiscard]] PathClass atLight() const noexcept { return path_.layer(); }
+    /// The class if it goes over one more vertex and then ends at a light.
+    [[nodiscard]] PathClass atLightAfter(LobeKinds kind) const noexcept { return pathAfter(kind).layer(); }
 
 private:
-    /// In the order of PathClass: E S*, E S* X, E S* X S+, all else.
-    enum class State : std::uint8_t { Eye, DirectReceiver, CausticChain, Other };
-    State state_ = State::Eye;
+    PathString path_;
 };
 
 }  // namespace pellucid

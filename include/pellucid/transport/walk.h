@@ -25,11 +25,17 @@ struct Maps {
     float causticRadiusMax = 1.0F;
 };
 
+/// How light reaches a vertex: by chance when a direction meets a lamp, by next-event estimation where that can find it,
+/// or by both, weighted.
+enum class LightStrategy : std::uint8_t { Chance, NextEvent, Both };
+
 struct TransportOptions {
+    Directions directions = Directions::Bsdf;
+    LightStrategy lights = LightStrategy::Both;
     bool powerHeuristic = true;
     float rouletteThreshold = 1.0F;   ///< 0: no Russian roulette
     int maxDepth = 0;                 ///< surface vertices; 0: no limit
-    bool leaveCaustics = false;       ///< E X S+ L adds 0: light tracing carries it
+    LeftClasses left;                 ///< classes that others carry
 };
 
 struct TransportContext {
@@ -62,7 +68,6 @@ struct WalkRay {
     Ray ray;
     float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;
     Rgb absorption{0.0F};             ///< of the medium, per scene unit
-    bool mediumKnown = false;         ///< false: taken from the first surface that is hit from inside
     float kernelFootprints = 1.0F;    ///< radius of the caustic kernel, in pixel footprints
 };
 
@@ -70,8 +75,10 @@ class Walk {
 public:
     explicit Walk(const TransportContext& context) noexcept : context_(context), holes_(context.scene.hasHoles()) {}
 
-    /// Radiance along a camera ray, by class. `dimension`s of the sampler from 2 on are used, 8 a vertex.
-    [[nodiscard]] LayeredRadiance fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first = nullptr) noexcept;
+    /// Radiance along a camera ray, by class. `dimension`s of the sampler from 2 on are used, 8 a vertex. `strings`
+    /// receives the same radiance by path string.
+    [[nodiscard]] LayeredRadiance fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first = nullptr,
+                                          StringSums* strings = nullptr) noexcept;
 
     /// Radiance that arrives at a D vertex along a gather ray, without direct light and without what the caustic map holds.
     /// `distance` receives the length to the first surface (infinity: none).
@@ -97,6 +104,8 @@ private:
     void addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] bool scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] float misWeight(float mine, float other) const noexcept;
+    /// Of a lamp that a sampled direction met; `pdfLight`: that of next-event estimation.
+    [[nodiscard]] float hitWeight(float pdfSampled, float pdfLight) const noexcept;
 
     void write(const State& state, const SurfaceHit* hit, const Bsdf* bsdf) const;
 

@@ -1,0 +1,78 @@
+/// The reference for caustics that are themselves seen in a mirror or through glass, E S+ D S+ L: light paths fill fine
+/// texels on the receivers in double precision, eye paths look through their S chain at them. Every light is seen, point
+/// lights too. Bias enters here, and only by the box of a texel, h^2 lap E / 24 to first order: each look-up is made at h
+/// and at h/2 and extrapolated, (4 E(h/2) - E(h)) / 3; what the extrapolation moved is the error bar.
+///
+/// Texels are congruent parts of the triangles themselves, so that their areas are exact and no light is lost at an edge.
+/// Only those that an eye path has looked at are kept: each counts the passes since then.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include <pellucid/base/parallel.h>
+#include <pellucid/math/hash.h>
+#include <pellucid/scene/scene.h>
+#include <pellucid/transport/light_trace.h>
+
+namespace pellucid {
+
+class TexelIrradiance {
+public:
+    /// `width`: of a coarse texel (h), scene units.
+    TexelIrradiance(const Scene& scene, const Camera& camera, float width) : scene_(scene), camera_(camera), width_(width) {}
+
+    /// One iteration, part one: an eye path a pixel over S lobes to a D vertex. Keeps the texels that they meet.
+    void look(std::uint64_t seed, std::uint32_t pass, const Workers& workers);
+    /// Part two: the light of a pass that arrives over S lobes. In the order of the paths.
+    void deposit(const std::vector<CausticArrival>& arrivals, std::uint32_t pass);
+    /// Part three: what the eye paths of part one see, as splats of class E S+ D S+ L. Odd and even passes never mix.
+    void resolve(std::uint32_t pass, std::vector<LightSplat>& splats);
+
+    [[nodiscard]] std::size_t texels() const noexcept { return texels_.size() * 4; }
+    [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
+    /// Share by which extrapolation changed the class's energy, pixel by pixel, root mean square: bounds the bias left.
+    [[nodiscard]] double extrapolated() const noexcept;
+
+private:
+    /// A coarse texel: one of n^2 parts of one side of a triangle.
+    struct Key {
+        std::uint32_t geometry = 0, primitive = 0, row = 0, column = 0;  ///< lowest bits of row: upper half; of column: back side
+        bool operator==(const Key&) const = default;
+    };
+    struct KeyHash {
+        std::size_t operator()(const Key& k) const noexcept {
+            return hashCombine(static_cast<std::uint64_t>(k.geometry) << 32U | k.primitive, static_cast<std::uint64_t>(k.row) << 32U | k.column);
+        }
+    };
+    struct Texel {
+        double sum[2][4][6] = {};    ///< odd or even passes; quarter; E and E5 (surface/bsdf.h), W
+        std::uint32_t firstPass = 0;
+        double area = 0.0;           ///< of the whole texel
+    };
+    struct Place {
+        Key key;
+        std::uint32_t quarter = 0;
+        double area = 0.0;
+    };
+    struct Look {
+        std::uint32_t pixel = 0;
+        Place place;
+        Rgb weight{0.0F};            ///< throughput x rho / pi x T(wo)
+        DiffuseLobe lobe;
+    };
+    [[nodiscard]] Place placeOf(std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric, bool back) const noexcept;
+    void lookThrough(std::uint32_t pixel, Sampler& sampler, std::vector<Look>& looks, std::uint64_t& rays) const;
+
+    const Scene& scene_;
+    const Camera& camera_;
+    float width_;
+    std::unordered_map<Key, Texel, KeyHash> texels_;
+    std::vector<Look> looks_;
+    std::vector<std::array<double, 2>> seen_;  ///< by pixel: sums of luminance at h and extrapolated
+    std::uint64_t rays_ = 0;
+};
+
+}  // namespace pellucid

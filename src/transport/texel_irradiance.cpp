@@ -1,0 +1,149 @@
+#include <pellucid/transport/texel_irradiance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <pellucid/math/constants.h>
+
+#include "medium.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::uint64_t kLookStream = 6ULL << 40U;
+constexpr std::size_t kPixelsPerChunk = 1024;
+constexpr int kLongestChain = 256;
+constexpr std::uint64_t kFirstDimension = 2, kDimensionsPerVertex = 5;
+constexpr double kMostParts = 1e4;
+
+}  // namespace
+
+TexelIrradiance::Place TexelIrradiance::placeOf(std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric,
+                                                bool back) const noexcept {
+    const auto corner = scene_.corners(geometry, primitive);
+    const glm::dvec3 a(corner[0]), b(corner[1]), c(corner[2]);
+    const double longest = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)});
+    const double n = std::clamp(std::ceil(longest / static_cast<double>(width_)), 1.0, kMostParts);
+    const double u = std::clamp(static_cast<double>(barycentric.x), 0.0, 1.0) * n, v = std::clamp(static_cast<double>(barycentric.y), 0.0, 1.0) * n;
+    const double row = std::min(std::floor(u), n - 1.0), column = std::min(std::floor(v), n - 1.0);
+    double s = u - row, t = v - column;
+    const bool upper = s + t > 1.0;
+    if (upper) s = 1.0 - s, t = 1.0 - t;
+    Place place;
+    place.key = {geometry, primitive, static_cast<std::uint32_t>(row) * 2U + (upper ? 1U : 0U), static_cast<std::uint32_t>(column) * 2U + (back ? 1U : 0U)};
+    place.quarter = s > 0.5 ? 1U : t > 0.5 ? 2U : s + t < 0.5 ? 0U : 3U;
+    place.area = 0.5 * glm::length(glm::cross(b - a, c - a)) / (n * n);
+    return place;
+}
+
+/// Walks over S lobes; wherever the path stands at a D lobe after at least one of them, it looks. [algorithms: E S+ D]
+void TexelIrradiance::lookThrough(std::uint32_t pixel, Sampler& sampler, std::vector<Look>& looks, std::uint64_t& rays) const {
+    const auto width = static_cast<std::uint32_t>(camera_.width());
+    const glm::vec2 corner(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
+    const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
+    Ray ray = camera_.ray(corner + jitter, lens).ray;
+    Rgb throughput(1.0F), absorption(0.0F);
+    float etaScale = 1.0F;
+    for (int vertex = 0; vertex < kLongestChain; ++vertex) {
+        sampler.setDimension(kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(vertex));
+        ++rays;
+        const auto hit = scene_.intersect(ray, sampler.next1D());
+        if (!hit) return;
+        const glm::vec3 wo = -ray.direction;
+        const Bsdf bsdf = scene_.surfaces().bsdf(hit->point, wo);
+        absorption = medium::beforeHit(scene_, hit->point, bsdf, absorption);
+        throughput *= medium::transmittance(absorption, hit->distance);
+        if (vertex > 0 && (bsdf.kinds() & kDiffuse) != kNoLobe) {
+            const DiffuseLobe& lobe = bsdf.diffuse();
+            const float towardsEye = std::min(1.0F, std::fabs(glm::dot(wo, bsdf.shadingNormal())));
+            looks.push_back({pixel, placeOf(hit->point.geometry, hit->point.primitive, hit->point.barycentric, bsdf.backSide()),
+                             throughput * lobe.reflectance * (kInvPi * lobe.transmittance(towardsEye)), lobe});
+        }
+        const float choose = sampler.next1D();
+        const auto next = bsdf.sample(wo, choose, sampler.next2D(), kSpecular, TransportMode::Radiance);
+        if (!next) return;
+        throughput *= next->weight;
+        etaScale *= next->etaScale;
+        const float survive = std::min(vertex > 64 ? 0.95F : 1.0F, maxComponent(throughput) * etaScale);
+        if (!(survive > 0.0F) || sampler.next1D() >= survive) return;
+        throughput /= survive;
+        absorption = medium::afterHit(scene_, hit->point, bsdf, absorption, next->transmitted);
+        const glm::vec3& n = bsdf.geometricNormal();
+        ray = Ray{offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi, std::numeric_limits<float>::infinity()};
+    }
+}
+
+void TexelIrradiance::look(std::uint64_t seed, std::uint32_t pass, const Workers& workers) {
+    const std::size_t pixels = static_cast<std::size_t>(camera_.width()) * static_cast<std::size_t>(camera_.height());
+    std::vector<std::vector<Look>> chunks((pixels + kPixelsPerChunk - 1) / kPixelsPerChunk);
+    std::vector<std::uint64_t> rays(chunks.size(), 0);
+    workers.forRanges(pixels, kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Sampler sampler(seed, kLookStream + i, pass);
+            lookThrough(static_cast<std::uint32_t>(i), sampler, chunks[begin / kPixelsPerChunk], rays[begin / kPixelsPerChunk]);
+        }
+    });
+    looks_.clear();
+    seen_.resize(pixels, {0.0, 0.0});
+    for (std::size_t c = 0; c < chunks.size(); ++c) {
+        looks_.insert(looks_.end(), chunks[c].begin(), chunks[c].end());
+        rays_ += rays[c];
+    }
+    for (const Look& l : looks_) {
+        const auto [it, fresh] = texels_.try_emplace(l.place.key);
+        if (!fresh) continue;
+        it->second.firstPass = pass;
+        it->second.area = l.place.area;
+    }
+}
+
+void TexelIrradiance::deposit(const std::vector<CausticArrival>& arrivals, std::uint32_t pass) {
+    for (const CausticArrival& a : arrivals) {
+        const Place place = placeOf(a.geometry, a.primitive, a.barycentric, a.backSide);
+        const auto it = texels_.find(place.key);
+        if (it == texels_.end()) continue;
+        double* sum = it->second.sum[pass & 1U][place.quarter];
+        const double s = 1.0 - static_cast<double>(a.cosine), s5 = s * s * s * s * s;
+        for (glm::length_t c = 0; c < 3; ++c) {
+            sum[c] += static_cast<double>(a.flux[c]);
+            sum[3 + c] += static_cast<double>(a.flux[c]) * s5;
+        }
+    }
+}
+
+void TexelIrradiance::resolve(std::uint32_t pass, std::vector<LightSplat>& splats) {
+    PathString path;
+    for (const LobeKinds kind : {kSpecular, kDiffuse, kSpecular}) path.pass(kind);
+    for (const Look& l : looks_) {
+        const Texel& texel = texels_.find(l.place.key)->second;
+        // Passes of this parity from the texel's first one on, this one included.
+        const double passes = (pass - texel.firstPass) / 2 + 1;
+        const auto& quarters = texel.sum[pass & 1U];
+        Rgb value(0.0F), coarse(0.0F);
+        for (glm::length_t c = 0; c < 3; ++c) {
+            const auto through = [&](const double* sum) { return static_cast<double>(l.lobe.a) * sum[c] - static_cast<double>(l.lobe.b) * sum[3 + c]; };
+            double all = 0.0;
+            for (const auto& q : quarters) all += through(q);
+            const double wide = all / (passes * texel.area), fine = through(quarters[l.place.quarter]) / (passes * 0.25 * texel.area);
+            value[c] = static_cast<float>((4.0 * fine - wide) / 3.0);
+            coarse[c] = static_cast<float>(wide);
+        }
+        value *= l.weight;
+        seen_[l.pixel][0] += static_cast<double>(luminance(coarse * l.weight));
+        seen_[l.pixel][1] += static_cast<double>(luminance(value));
+        if (!isBlack(value)) splats.push_back({l.pixel, value, path});
+    }
+}
+
+double TexelIrradiance::extrapolated() const noexcept {
+    double difference = 0.0, square = 0.0;
+    for (const auto& [coarse, value] : seen_) {
+        difference += (value - coarse) * (value - coarse);
+        square += value * value;
+    }
+    return square > 0.0 ? std::sqrt(difference / square) : 0.0;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,172 @@
+/// Every two unbiased estimators must mean the same image, and the gate that says so must see planted bugs.
+#include <gtest/gtest.h>
+
+#include <pellucid/io/gltf.h>
+
+#include "agreement.h"
+#include "class_groups.h"
+#include "small_scenes.h"
+
+namespace pellucid {
+namespace {
+
+using namespace testing;
+
+Scene made(const SmallScene& s, const Workers& workers) { return Scene(s.scene, s.environment, SceneOptions{}, workers); }
+
+class Estimators : public ::testing::TestWithParam<int> {};
+
+TEST_P(Estimators, BidirectionalMeansWhatPathTracingMeans) {
+    const SmallScene small = smallScenes()[static_cast<std::size_t>(GetParam())];
+    const Workers workers;
+    const Scene scene = made(small, workers);
+    Rendering path{Method::Path, 64};
+    path.settings = small.settings;
+    path.width = path.height = 24;
+    Rendering bdpt = path;
+    bdpt.method = Method::Bdpt;
+    bdpt.samples = 32;
+    bdpt.firstSeed = 1000;
+    const auto a = renderSeeds(scene, path, workers), b = renderSeeds(scene, bdpt, workers);
+    for (const char* layer : {"", "emission", "direct", "caustic", "indirect"}) {
+        const Agreement agreement = agreementOf(valuesOf(a, 2, layer), valuesOf(b, 2, layer));
+        EXPECT_TRUE(agreement.holds(sidakLevel(35))) << small.name << ", " << (*layer == '\0' ? "all" : layer) << ": " << agreement;
+        if (*layer == '\0') std::cout << small.name << ": " << agreement << "\n";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(SmallScenes, Estimators, ::testing::Range(0, 7));
+
+/// The ladder of sampling: each rung is unbiased.
+TEST(SamplingLadder, EveryRungMeansTheSameImage) {
+    const SmallScene small = roughGlass();
+    const Workers workers;
+    const Scene scene = made(small, workers);
+    Rendering best{Method::Path, 64};
+    best.width = best.height = 20;
+    const SeedValues expected = valuesOf(renderSeeds(scene, best, workers), 2);
+    const std::vector<std::pair<std::string, std::string>> rungs{
+        {"path.directions", "cosine"}, {"path.directions", "uniform"},   {"path.lights", "nee"},    {"path.lights", "none"},
+        {"path.sampler", "halton"},    {"path.sampler", "independent"}, {"path.sampler", "stratified"}, {"path.roulette", "0"}};
+    std::uint64_t seed = 1000;
+    for (const auto& [name, value] : rungs) {
+        Rendering rung = best;
+        rung.samples = 192;
+        rung.firstSeed = seed += 1000;
+        setParameter(rung.settings, name, value);
+        if (name == "path.roulette") rung.settings.maxDepth = 12;  // what is farther out is too little to see
+        const Agreement agreement = agreementOf(expected, valuesOf(renderSeeds(scene, rung, workers), 2));
+        EXPECT_TRUE(agreement.holds(sidakLevel(24))) << name << "=" << value << ": " << agreement;
+    }
+}
+
+/// Mean variance of a pixel over seeds.
+double varianceOf(const Scene& scene, Rendering what, const std::vector<std::pair<std::string, std::string>>& settings, const Workers& workers) {
+    for (const auto& [name, value] : settings) setParameter(what.settings, name, value);
+    const SeedValues values = valuesOf(renderSeeds(scene, what, workers), 1);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < values.front().size(); ++i) sum += cellOverSeeds(values, i).variance;
+    return sum;
+}
+
+/// Where theory says which is better: a small lamp on diffuse walls wants next-event estimation; without it a cosine
+/// beats uniform directions; direct light of a soft lamp wants well spread samples.
+TEST(SamplingLadder, VarianceFallsFromRungToRung) {
+    const Workers workers;
+    check::SceneBuilder b;
+    detail::addCorner(b, detail::coloured({0.7F, 0.6F, 0.5F}), detail::coloured({0.3F, 0.6F, 0.7F}));
+    b.square({0.2, 1.6, 0.3}, {0, -1, 0}, 0.5, check::lamp(4.0F));
+    const Scene scene(b.description(), std::nullopt, SceneOptions{}, workers);
+    Rendering what{Method::Path, 16, 16};
+    what.width = what.height = 16;
+    using Settings = std::vector<std::pair<std::string, std::string>>;
+    const auto variance = [&](const Settings& s) { return varianceOf(scene, what, s, workers); };
+    const double mis = variance({}), none = variance({{"path.lights", "none"}}), nee = variance({{"path.lights", "nee"}});
+    EXPECT_LT(mis, 0.5 * none);
+    EXPECT_LT(nee, 0.5 * none);
+    EXPECT_LT(none, 0.95 * variance({{"path.lights", "none"}, {"path.directions", "uniform"}}));
+    const double independent = variance({{"path.sampler", "independent"}});
+    EXPECT_LT(mis, 0.6 * independent);
+    EXPECT_LT(variance({{"path.sampler", "stratified"}}), 0.8 * independent);
+    EXPECT_LT(variance({{"path.sampler", "halton"}}), 0.8 * independent);
+
+    // A rough mirror at a lamp: directions by the lobe.
+    check::SceneBuilder m;
+    detail::addCorner(m, check::mirror(0.8F, 0.35F), check::mirror(0.6F, 0.35F));
+    m.square({0.0, 1.2, 0.0}, {0, -0.4, 1}, 0.6, check::lamp(2.0F));
+    const Scene metal(m.description(), std::nullopt, SceneOptions{}, workers);
+    const double byLobe = varianceOf(metal, what, {{"path.lights", "none"}}, workers);
+    EXPECT_LT(byLobe, 0.5 * varianceOf(metal, what, {{"path.lights", "none"}, {"path.directions", "cosine"}}, workers));
+}
+
+/// Next-event estimation by hand at what the camera sees (through smooth glass, too), with or without a planted bug.
+enum class Bug { None, MissingCosine, EtaLeftOut, LightTwice };
+
+std::vector<Image> directByHand(const Scene& scene, const Rendering& what, Bug bug) {
+    const Camera camera = scene.camera("", what.width, what.height);
+    std::vector<Image> images;
+    for (int s = 0; s < what.seeds; ++s) {
+        Image image(what.width, what.height, {"R", "G", "B"});
+        for (std::size_t i = 0; i < image.pixels(); ++i) {
+            Rgb sum(0.0F);
+            for (std::uint32_t k = 0; k < what.samples; ++k) {
+                Sampler sampler(what.firstSeed + static_cast<std::uint64_t>(s), i, k);
+                const glm::vec2 corner(i % static_cast<std::size_t>(what.width), i / static_cast<std::size_t>(what.width));
+                Ray ray = camera.ray(corner + sampler.next2D(), {0.5F, 0.5F}).ray;
+                Rgb throughput(1.0F);
+                for (int bounce = 0; bounce < 4; ++bounce) {
+                    const auto hit = scene.intersect(ray, 0.5F);
+                    if (!hit) break;
+                    const glm::vec3 wo = -ray.direction;
+                    const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wo);
+                    const glm::vec3 n = bsdf.geometricNormal();
+                    if (bsdf.kinds() == kSpecular) {
+                        const auto next = bsdf.sample(wo, sampler.next1D(), sampler.next2D(), kAllLobes,
+                                                      bug == Bug::EtaLeftOut ? TransportMode::Flux : TransportMode::Radiance);
+                        if (!next) break;
+                        throughput *= next->weight;
+                        ray = {offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi};
+                        continue;
+                    }
+                    const auto light = scene.lights().sample(hit->point.position, n, sampler.next1D(), sampler.next2D());
+                    if (!light) break;
+                    const Ray shadow = shadowRay(hit->point.position, n, light->wi, light->distance);
+                    Rgb f = bsdf.eval(wo, light->wi, kAllLobes, TransportMode::Radiance) * scene.visibility(shadow);
+                    if (bug == Bug::MissingCosine) f /= std::max(1e-3F, glm::dot(light->wi, n));
+                    if (bug == Bug::LightTwice && light->light == 0) f *= 2.0F;
+                    sum += throughput * f * light->radiance / light->pdfSolidAngle;
+                    break;
+                }
+            }
+            image.setRgb(i, sum / static_cast<float>(what.samples));
+        }
+        images.push_back(std::move(image));
+    }
+    return images;
+}
+
+/// A camera inside of a glass body that looks out at a lit floor: of the path tracer's image the classes E D L and E S+ D L.
+TEST(Estimators, TheGateSeesPlantedBugs) {
+    check::SceneBuilder b;
+    b.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, check::lambert(0.6F));
+    b.box({-0.7, 0.8, -0.7}, {0.7, 2.5, 0.7}, check::glass(1.5F));
+    b.perspective({0.0, 2.0, 0.1}, {0.0, 0.0, 0.0}, 0.5);
+    for (const double x : {-1.5, 1.6}) b.square({x, 0.7, 0.3}, {-x, -0.6, 0}, 0.3, check::lamp(4.0F));
+    const Workers workers;
+    const Scene scene(b.description(), std::nullopt, SceneOptions{}, workers);
+    Rendering what{Method::Path, 32};
+    what.width = what.height = 16;
+    what.layers = {"classes"};
+    const SeedValues expected = valuesOf(renderSeeds(scene, what, workers), 2, "class.ESDL");
+    what.firstSeed = 500;
+    const auto held = [&](Bug bug) { return agreementOf(expected, valuesOf(directByHand(scene, what, bug), 2)); };
+    const Agreement right = held(Bug::None);
+    EXPECT_TRUE(right.holds(sidakLevel(3))) << right;
+    for (const Bug bug : {Bug::MissingCosine, Bug::EtaLeftOut, Bug::LightTwice}) {
+        const Agreement wrong = held(bug);
+        EXPECT_FALSE(wrong.holds(1e-6)) << static_cast<int>(bug) << ": " << wrong;
+    }
+}
+
+}  // namespace
+}  // namespace pellucid
