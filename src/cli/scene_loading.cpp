@@ -14,10 +14,6 @@ std::unique_ptr<Scene> loadScene(const SceneArguments& arguments, bool requireLi
     SceneDescription description = loadGltf(arguments.scene, log);
     std::optional<EnvironmentDescription> environment;
     if (!arguments.environment.empty()) environment = loadEnvironment(arguments.environment);
-    if (environment && environment->mendedTexels > 0)
-        logTo(log, LogLevel::Warning,
-              std::to_string(environment->mendedTexels) + " texels of " + arguments.environment +
-                  " are negative or not finite and count as black");
     SceneOptions options;
     options.lobeRules.castRoughness = static_cast<float>(arguments.settings.castRoughness);
     options.requireLight = requireLight;

@@ -35,7 +35,7 @@ constexpr auto kParameters = std::to_array<Parameter>({
     {"photon.global", &Settings::globalPhotons, 0, kBillion, true, true, "", "paths",
      "photon paths a generation of the cache, for the global map", ParameterPass::GlobalMap, {0.1, 8, true}},
     {"photon.radius", &Settings::causticRadius, 0.01, 1000, true, true, "", "pixels",
-     "first radius of the caustic kernel, in pixel footprints. Larger: smoother and more biased", ParameterPass::CausticMap, {0.5, 10}},
+     "first radius of the caustic kernel, one for all pixels, in footprints; auto: chosen by place from the photons", ParameterPass::CausticMap, {0.5, 10}},
     {"photon.alpha", &Settings::alpha, 0.01, 1, false, false, "", "",
      "reduction of the radius, r^2 (i + alpha)/(i + 1); 1: the radius stays and so does its bias", ParameterPass::CausticMap, {0.4, 1}},
     {"photon.guiding", &Settings::guiding, 0, 0, true, false, "auto|on|off", "",
