@@ -49,4 +49,8 @@ if(TARGET pellucid_cli)
     add_test(NAME report COMMAND bash ${PROJECT_SOURCE_DIR}/tests/report/check_report.sh --make $<TARGET_FILE:pellucid_cli>
                                  ${PROJECT_SOURCE_DIR}/scenes/ring.glb)
     set_tests_properties(report PROPERTIES LABELS report TIMEOUT 600 SKIP_RETURN_CODE 77)
+    # Kills at random moments, no memory, a full disk. By hand 50 kills; here as many as a default run has time for.
+    add_test(NAME faults COMMAND bash ${PROJECT_SOURCE_DIR}/tests/faults/kill_test.sh $<TARGET_FILE:pellucid_cli>
+                                 ${PROJECT_SOURCE_DIR}/scenes/ring.glb 12)
+    set_tests_properties(faults PROPERTIES LABELS faults TIMEOUT 600)
 endif()

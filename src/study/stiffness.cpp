@@ -125,7 +125,7 @@ struct Known {
 /// apart from the renderer.
 struct RoughMirror {
     double alpha, half = 0.05, radiance = 1.0 / (4.0 * 0.05 * 0.05);
-    /// f cos at the mirror x = 1 (normal -x) from direction wi to wo, GGX with Smith's uncorrelated masking, F = 1.
+    /// f cos at the mirror x = 1 (normal -x) from direction wi to wo, GGX with Smith's height-correlated masking, F = 1.
     [[nodiscard]] double reflected(const glm::dvec3& wi, const glm::dvec3& wo) const {
         const glm::dvec3 n(-1, 0, 0), h = glm::normalize(wi + wo);
         const double ci = glm::dot(n, wi), co = glm::dot(n, wo), ch = glm::dot(n, h), a2 = alpha * alpha;
