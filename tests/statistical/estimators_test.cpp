@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <pellucid/io/gltf.h>
+#include <pellucid/math/sampler.h>
+#include <pellucid/transport/walk.h>
 
 #include "agreement.h"
 #include "class_groups.h"
@@ -125,7 +127,7 @@ std::vector<Image> directByHand(const Scene& scene, const Rendering& what, Bug b
                                                       bug == Bug::EtaLeftOut ? TransportMode::Flux : TransportMode::Radiance);
                         if (!next) break;
                         throughput *= next->weight;
-                        ray = {offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi};
+                        ray = Ray{offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi, std::numeric_limits<float>::infinity()};
                         continue;
                     }
                     const auto light = scene.lights().sample(hit->point.position, n, sampler.next1D(), sampler.next2D());
