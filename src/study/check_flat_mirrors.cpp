@@ -55,9 +55,9 @@ std::vector<Finding> lampInMirror(const CheckContext& context) {
                              expected,
                              kPiD / kRho,
                              "irradiance",
-                             {{Method::Path, 512, 0.0, 0.06, "caustic"},
+                             {{Method::Path, 768, 0.0, 0.06, "caustic"},
                               {Method::Photon, 16, 0.01, 0.03, "caustic"},
-                              {Method::Light, 96, 0.0, 0.04, "caustic"}},
+                              {Method::Light, 48, 0.0, 0.04, "caustic"}},
                              16,
                              smallSettings()});
 }
@@ -110,7 +110,7 @@ std::vector<Finding> glowingMirrors(const CheckContext& context) {
                                        1.0 / (1.0 - static_cast<double>(r)),
                                        1.0,
                                        fmt::format("radiance at R = {}", r),
-                                       {{Method::Path, 16, 0.0, 0.05}, {Method::Photon, 8, 0.0, 0.1}},
+                                       {{Method::Path, 32, 0.0, 0.05}, {Method::Photon, 16, 0.0, 0.1}},
                                        16,
                                        smallSettings()});
         all.insert(all.end(), found.begin(), found.end());

@@ -55,7 +55,7 @@ expect() {
 expect 3 "" render -o "$work/no/such/folder/out.exr"
 expect 3 "" render -o /dev/full/out.exr
 expect 3 "standard output" bash -c "'$pellucid' diff '$work/whole.exr' '$work/out.exr' >/dev/full"
-no_memory() { (ulimit -v 400000 && "$pellucid" render "$scene" -o "$work/big.exr" --size 20000x20000 --spp 1 --quiet); }
+no_memory() { (ulimit -v 2000000 && "$pellucid" render "$scene" -o "$work/big.exr" --size 20000x20000 --spp 1 --quiet); }
 expect 3 "memory" no_memory
 [ ! -e "$work/big.exr" ] || fail "a render without memory left an image"
 echo "kill_test: $kills kills, $finished renders ended in time, $resumed checkpoints; the rest is as it should be"
