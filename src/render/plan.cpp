@@ -146,7 +146,8 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
 
 }  // namespace
 
-Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, const Workers& workers) {
+Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, float kernelFootprints, float largestKernel,
+              const Workers& workers) {
     Survey s;
     const auto width = static_cast<std::size_t>(camera.width());
     s.points.resize(width * static_cast<std::size_t>(camera.height()));
@@ -168,9 +169,14 @@ Survey survey(const TransportContext& context, const Camera& camera, std::uint64
     if (footprints.empty()) return s;
     std::nth_element(footprints.begin(), footprints.begin() + static_cast<std::ptrdiff_t>(footprints.size() / 2), footprints.end());
     s.medianFootprint = footprints[footprints.size() / 2];
-    s.visible = VisibleCells(std::max(8.0F * s.medianFootprint, 1e-4F));
+    // Cells of half the reach of all kernels but the largest few: a mark takes at most five cells along an axis.
+    const auto nearlyAll = footprints.begin() + static_cast<std::ptrdiff_t>(footprints.size() * 95 / 100);
+    std::nth_element(footprints.begin(), nearlyAll, footprints.end());
+    const auto reach = [&](float footprint) { return std::min(kernelFootprints * footprint, largestKernel); };
+    const float cell = std::max({8.0F * s.medianFootprint, 0.5F * reach(*nearlyAll), 1e-4F});
+    s.visible = VisibleCells(cell);
     for (const GatherPoint& p : s.points)
-        if (p.valid) s.visible.mark(p.position);
+        if (p.valid) s.visible.mark(p.position, std::min(reach(p.footprint), 2.0F * cell));
     return s;
 }
 

@@ -222,7 +222,8 @@ void Renderer::prepare() {
     const auto& layers = request_.layers;
     if (std::find(layers.begin(), layers.end(), "classes") != layers.end()) film_.keepStrings(scene_.lobeKinds());
     if (request_.method != Method::Path && request_.method != Method::Bdpt) {
-        survey_ = survey(context_, camera_, request_.seed, workers_);
+        survey_ = survey(context_, camera_, request_.seed, std::max(KernelRadiusOptions{}.largest, static_cast<float>(request_.settings.causticRadius)),
+                         kMaxCausticRadius * scene_.radius(), workers_);
         pilotStage_.rays += survey_.rays;
     }
     plan_ = makePlan(scene_, camera_, request_, survey_, workers_);

@@ -53,7 +53,9 @@ struct Plan {
     [[nodiscard]] GenerationSize generation(std::uint32_t number) const noexcept;
 };
 
-[[nodiscard]] Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, const Workers& workers);
+/// `kernelFootprints`, `largestKernel` (scene units): how far kernels may reach from what is seen.
+[[nodiscard]] Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, float kernelFootprints, float largestKernel,
+                            const Workers& workers);
 
 [[nodiscard]] Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen,
                             const Workers& workers);

@@ -15,23 +15,18 @@ class VisibleCells {
 public:
     explicit VisibleCells(float cellSize) : inverseSize_(1.0F / cellSize), bits_(kBits / 64, 0) {}
 
-    void mark(const glm::vec3& p) noexcept {
-        const std::uint64_t h = slot(cell(p));
-        bits_[h >> 6U] |= std::uint64_t{1} << (h & 63U);
+    /// Marks the cells within `reach` of the point: a kernel there may ask for photons that far away.
+    void mark(const glm::vec3& p, float reach) noexcept {
+        const glm::ivec3 from = cell(p - reach), to = cell(p + reach);
+        for (int z = from.z; z <= to.z; ++z)
+            for (int y = from.y; y <= to.y; ++y)
+                for (int x = from.x; x <= to.x; ++x) {
+                    const std::uint64_t h = slot({x, y, z});
+                    bits_[h >> 6U] |= std::uint64_t{1} << (h & 63U);
+                }
     }
 
-    /// True when the point's cell or one of its six neighbours was marked.
-    [[nodiscard]] bool seen(const glm::vec3& p) const noexcept {
-        const glm::ivec3 c = cell(p);
-        if (test(c)) return true;
-        for (int axis = 0; axis < 3; ++axis)
-            for (int step = -1; step <= 1; step += 2) {
-                glm::ivec3 n = c;
-                n[axis] += step;
-                if (test(n)) return true;
-            }
-        return false;
-    }
+    [[nodiscard]] bool seen(const glm::vec3& p) const noexcept { return test(cell(p)); }
 
 private:
     static constexpr std::uint64_t kBits = 1U << 21U;
