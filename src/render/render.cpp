@@ -32,6 +32,8 @@ constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, k
                         kBidirectionalPass = 5ULL << 40U;
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
 constexpr double kGenerationShare = 1.5;
+/// Where the global map is evaluated for gather rays.
+constexpr std::size_t kPlaces = 60'000;
 /// How much longer the next generation takes, about.
 constexpr double kGenerationGrowth = 1.5;
 /// Of a budget of time: a cache that is not full by then stays as it is, and what it lacks is traced.
@@ -295,7 +297,8 @@ void Renderer::renewGeneration() {
         RadianceMapOptions options;
         options.maxRadius = 0.1F * scene_.radius();
         options.seed = hashCombine(request_.seed, kGlobalPass + generation_);
-        globalMap_ = std::make_unique<RadianceMap>(scene_, pass.photons, options, workers_);
+        const std::vector<GatherPoint> places = findPlaces(context_, survey_.points, kPlaces, options.seed, workers_);
+        globalMap_ = std::make_unique<RadianceMap>(scene_, pass.photons, places, options, workers_);
         context_.maps.global = globalMap_.get();
         globalStage_.rays += pass.rays + globalMap_->rays();
         globalStage_.photonsEmitted += pass.emitted;

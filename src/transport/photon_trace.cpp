@@ -81,7 +81,7 @@ GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, cons
             if (!a) break;
             if (receives(*a)) {
                 const Photon photon = photonOf(*a, path.flux, perPath);
-                if (usable(photon)) out.photons.push_back({photon, a->bsdf.shadingNormal(), a->bsdf.diffuse(), arrived});
+                if (usable(photon)) out.photons.push_back({photon, arrived});
             }
             LobeKinds by = kNoLobe;
             if (!scatter(scene, path, *a, kAllLobes, sampler, &by)) break;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <pellucid/math/constants.h>
 #include <pellucid/math/frame.h>
 #include <pellucid/math/sampler.h>
+#include <pellucid/math/warps.h>
 #include <pellucid/transport/walk.h>
 
 #include "photon_tree.h"
@@ -18,13 +20,12 @@ namespace {
 constexpr float kMinNormalCosine = 0.8F;
 constexpr float kMaxPlaneDistance = 0.2F;  ///< of the distance searched
 constexpr int kMaxNeighbours = 64;
-/// A look-up reaches this many estimate radii: beyond, the nearest point says nothing about the place.
+/// A place answers for look-ups within this many radii of its estimate, or of the distance to its kNeighbour-th neighbour.
 constexpr float kReach = 1.5F;
-/// Points stand where photons arrived, but never where one stands that their density counts: a photon that did both would
-/// see the clumps of its like, and the clumps have the small Voronoi cells: 2 % too dark per bounce. So every fourth indirect
-/// photon only gives its place (as direct ones do), and the flux of the others is scaled up.
-constexpr std::uint32_t kSharePlaces = 4;
-constexpr float kDensityScale = static_cast<float>(kSharePlaces) / static_cast<float>(kSharePlaces - 1);
+constexpr int kNeighbour = 6;
+/// Of the places, those found after a second D vertex: near corners gather rays go on to there.
+constexpr std::size_t kSecondShare = 4;
+constexpr std::uint64_t kPlaceStream = 0x706c6163ULL;
 constexpr std::uint32_t kNobody = 0xffffffffU;
 constexpr std::size_t kSectors = 8;
 /// Height of the sectors' rays over the surface, as a share of the kernel's radius.
@@ -45,6 +46,7 @@ struct Reach {
 struct RadianceSite {
     glm::vec3 position{0.0F}, normal{0.0F};
     float radius = 0.0F;       ///< of the density estimate
+    float reach = 0.0F;        ///< of look-ups
     float freeRadius = 0.0F;   ///< reachable all around; farther away the point's sectors decide
 };
 
@@ -52,7 +54,7 @@ struct RadiancePoint {
     glm::vec3 position{0.0F}, normal{0.0F}, shadingNormal{0.0F};
     DiffuseLobe lobe;
     Rgb irradiance{0.0F}, caustic{0.0F};
-    float radius = 0.0F;
+    float radius = 0.0F, lookup = 0.0F;  ///< of the estimate and of look-ups
     Reach reach;
 };
 
@@ -87,6 +89,37 @@ struct NearestPhotons {
     }
 };
 
+/// The distance to the kNeighbour-th nearest point on the same side, or the bound.
+struct NeighbourDistance {
+    const std::vector<RadiancePoint>& points;
+    glm::vec3 normal;
+    float radius2;
+    std::array<float, kNeighbour + 1> nearest{};  ///< squared, sorted; with the point itself
+    int found = 0;
+
+    void init() noexcept {}
+    [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(found); }
+    [[nodiscard]] bool full() const noexcept { return true; }
+    [[nodiscard]] float worstDist() const noexcept { return radius2; }
+    bool addPoint(float distance2, std::uint32_t index) noexcept {
+        if (distance2 >= radius2 || glm::dot(points[index].normal, normal) < kMinNormalCosine) return true;
+        int at = std::min(found, kNeighbour);
+        for (; at > 0 && nearest[static_cast<std::size_t>(at - 1)] > distance2; --at)
+            nearest[static_cast<std::size_t>(at)] = nearest[static_cast<std::size_t>(at - 1)];
+        nearest[static_cast<std::size_t>(at)] = distance2;
+        found = std::min(found + 1, kNeighbour + 1);
+        if (found == kNeighbour + 1) radius2 = std::min(radius2, nearest[kNeighbour]);
+        return true;
+    }
+};
+
+[[nodiscard]] float distanceToNeighbour(const PointTree<RadiancePoint>& tree, const std::vector<RadiancePoint>& points, const RadiancePoint& p,
+                                        float bound) {
+    NeighbourDistance search{points, p.normal, bound * bound};
+    tree.search(p.position, search);
+    return search.found > kNeighbour ? std::sqrt(search.nearest[kNeighbour]) : bound;
+}
+
 /// The nearest radiance point on the same side that can see the place.
 struct NearestSite {
     const std::vector<RadianceSite>& sites;
@@ -105,10 +138,10 @@ struct NearestSite {
         if (glm::dot(s.normal, normal) < kMinNormalCosine) return true;
         const glm::vec3 offset = point - s.position;
         const float height = glm::dot(offset, normal);
-        if (height * height > 0.04F * s.radius * s.radius || distance2 > kReach * kReach * s.radius * s.radius) return true;
+        if (height * height > 0.04F * s.radius * s.radius || distance2 > s.reach * s.reach) return true;
         if (distance2 > s.freeRadius * s.freeRadius) {
             const float free = points[index].reach.free[Reach::sector(Frame(s.normal), offset)];
-            if (free < s.radius && distance2 > free * free) return true;
+            if (distance2 > free * free) return true;
         }
         radius2 = distance2;
         best = index;
@@ -132,7 +165,7 @@ struct NearestSite {
     return sum / static_cast<float>(samples);
 }
 
-/// Short rays along the surface, up to the kernel's radius: two a sector. A sector is as free as the shortest of the rays at
+/// Short rays along the surface, as far as look-ups reach: two a sector. A sector is as free as the shortest of the rays at
 /// its borders and in its middle, so that hardly any of its area lies behind a wall.
 void measureReach(const Scene& scene, RadiancePoint& p) noexcept {
     const Frame frame(p.normal);
@@ -143,8 +176,8 @@ void measureReach(const Scene& scene, RadiancePoint& p) noexcept {
     for (std::size_t i = 0; i < kRays; ++i) {
         const float phi = kTwoPi * static_cast<float>(i) / static_cast<float>(kRays);
         direction[i] = frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi);
-        const auto hit = scene.intersect(Ray{origin, direction[i], p.radius}, 0.0F);
-        distance[i] = hit ? hit->distance : p.radius;
+        const auto hit = scene.intersect(Ray{origin, direction[i], p.lookup}, 0.0F);
+        distance[i] = hit ? hit->distance : p.lookup;
     }
     for (std::size_t middle = 1; middle < kRays; middle += 2)
         p.reach.free[Reach::sector(frame, direction[middle])] = std::min({distance[middle - 1], distance[middle], distance[(middle + 1) % kRays]});
@@ -158,9 +191,13 @@ void estimateIndirect(const Scene& scene, const PhotonList& photons, const std::
     tree.search(p.position, nearest);
     const bool bounded = nearest.found < nearest.wanted;
     p.radius = bounded ? maxRadius : std::sqrt(nearest.radius2);
+    p.lookup = std::max(p.lookup, kReach * p.radius);
     measureReach(scene, p);
     float area = 0.0F;
-    for (const float free : p.reach.free) area += kPi / static_cast<float>(kSectors) * free * free;
+    for (const float free : p.reach.free) {
+        const float inside = std::min(free, p.radius);
+        area += kPi / static_cast<float>(kSectors) * inside * inside;
+    }
     if (!(area > 0.0F)) return;
     const Frame frame(p.normal);
     for (int i = bounded ? 0 : 1; i < nearest.found; ++i) {  // heap[0] is the farthest: the k-th, left out
@@ -184,49 +221,76 @@ struct RadianceMap::Impl {
     float reach = 0.0F;
 };
 
-RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& photons, const RadianceMapOptions& options,
-                         const Workers& workers)
+std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::vector<GatherPoint>& points, std::size_t count,
+                                    std::uint64_t seed, const Workers& workers) {
+    std::vector<std::uint32_t> from;
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+        if (points[i].valid) from.push_back(i);
+    std::vector<GatherPoint> found(from.empty() ? 0 : count);
+    workers.forEach(found.size(), 256, [&](std::size_t i) {
+        Sampler choice(seed, kPlaceStream, static_cast<std::uint32_t>(i));
+        const auto pick = static_cast<std::size_t>(choice.next1D() * static_cast<float>(from.size()));
+        GatherPoint at = points[from[std::min(pick, from.size() - 1)]];
+        for (int vertex = i % kSecondShare == 0 ? 2 : 1; vertex > 0 && at.valid; --vertex) {
+            Sampler sampler(hashCombine(seed, static_cast<std::uint64_t>(vertex)), kPlaceStream + 1, static_cast<std::uint32_t>(i));
+            const glm::vec3 direction = Frame(at.normal).toWorld(sampleCosineHemisphere(sampler.next2D()));
+            if (glm::dot(direction, at.geometricNormal) <= 0.0F) {
+                at.valid = false;
+                break;
+            }
+            WalkRay ray;
+            ray.ray = Ray{offsetOrigin(at.position, at.geometricNormal), direction, std::numeric_limits<float>::infinity()};
+            ray.absorption = at.absorption;
+            at = Walk(context).findGatherPoint(ray, sampler);
+        }
+        found[i] = at;
+    });
+    std::erase_if(found, [](const GatherPoint& p) { return !p.valid; });
+    return found;
+}
+
+RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& photons, const std::vector<GatherPoint>& places,
+                         const RadianceMapOptions& options, const Workers& workers)
     : impl_(std::make_unique<Impl>()) {
     struct Indirect {
         glm::vec3 position;
         std::uint32_t photon;
     };
     std::vector<Indirect> order;
-    std::vector<std::uint32_t> places;
-    for (std::uint32_t i = 0; i < photons.size(); ++i) {
-        if (photons[i].arrived == Arrived::Directly || i % kSharePlaces == 0) places.push_back(i);
-        else order.push_back({photons[i].photon.position, i});
-    }
+    for (std::uint32_t i = 0; i < photons.size(); ++i)
+        if (photons[i].arrived != Arrived::Directly) order.push_back({photons[i].photon.position, i});
     sortAlongMortonCurve(order);
     PhotonList indirect;
     std::vector<std::uint8_t> overSpecular;
     indirect.reserve(order.size());
     for (const Indirect& o : order) {
         indirect.push_back(photons[o.photon].photon);
-        indirect.back().flux *= kDensityScale;
         overSpecular.push_back(photons[o.photon].arrived == Arrived::OverSpecular ? 1 : 0);
     }
-    impl_->reach = kReach * options.maxRadius;
     const PointTree<Photon> tree(indirect);
     std::vector<RadiancePoint>& points = impl_->points;
-    const std::size_t stride = std::max<std::size_t>(1, (places.size() + options.maxPoints - 1) / std::max<std::size_t>(1, options.maxPoints));
-    for (std::size_t i = 0; i < places.size(); i += stride) {
-        const GlobalPhoton& g = photons[places[i]];
+    for (const GatherPoint& place : places) {
         RadiancePoint p;
-        p.position = g.photon.position;
-        p.normal = g.photon.normal;
-        p.shadingNormal = g.shadingNormal;
-        p.lobe = g.lobe;
+        p.position = place.position;
+        p.normal = place.geometricNormal;
+        p.shadingNormal = place.normal;
+        p.lobe = place.lobe;
         points.push_back(p);
     }
     sortAlongMortonCurve(points);
+    const PointTree<RadiancePoint> neighbours(points);
     impl_->sites.resize(points.size());
+    workers.forEach(points.size(), 256, [&](std::size_t i) {
+        RadiancePoint& p = points[i];
+        p.lookup = std::min(kReach * distanceToNeighbour(neighbours, points, p, options.maxRadius), kReach * options.maxRadius);
+    });
     workers.forEach(points.size(), 256, [&](std::size_t i) {
         RadiancePoint& p = points[i];
         estimateIndirect(scene, indirect, overSpecular, tree, p, options.neighbours, options.maxRadius);
         p.irradiance += directIrradiance(scene, p, options.lampSamples, options.seed, i);
-        impl_->sites[i] = {p.position, p.normal, p.radius, *std::min_element(p.reach.free.begin(), p.reach.free.end())};
+        impl_->sites[i] = {p.position, p.normal, p.radius, p.lookup, *std::min_element(p.reach.free.begin(), p.reach.free.end())};
     });
+    impl_->reach = kReach * options.maxRadius;
     impl_->rays = points.size() * (static_cast<std::uint64_t>(options.lampSamples) + 2 * kSectors);
     impl_->tree = std::make_unique<PointTree<RadianceSite>>(impl_->sites);
 }

@@ -1,8 +1,9 @@
-/// The global photon map as gather rays read it: irradiance precomputed at a subset of the photons' positions
-/// [Christensen1999], found by the nearest one. Direct light there is sampled from the lamps (no blur, no loss at edges);
-/// all other light is estimated from the photons that the point could reach along the surface, over the area that it could
-/// reach: short rays in eight sectors end the kernel at walls, so that light neither leaks through them nor is lost beside
-/// them. Bias enters by the kernel of that estimate and by the nearest-point look-up.
+/// The global photon map as gather rays read it: irradiance precomputed at places where gather rays land [Christensen1999 puts
+/// them at photons; but then bright clumps have the small Voronoi cells or reach into the dark beside them, a bias of some
+/// per cent], found by the nearest one. Direct light there is sampled from the lamps (no blur, no loss at edges); all other
+/// light is estimated from the photons that the place could reach along the surface, over the area that it could reach:
+/// short rays in eight sectors end the kernel at walls, so that light neither leaks through them nor is lost beside them.
+/// Bias enters by the kernel of that estimate.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +14,7 @@
 #include <pellucid/base/parallel.h>
 #include <pellucid/scene/scene.h>
 #include <pellucid/transport/photon.h>
+#include <pellucid/transport/walk.h>
 
 namespace pellucid {
 
@@ -22,18 +24,19 @@ enum class Arrived : std::uint8_t { Directly, OverSpecular, Otherwise };
 /// One photon of the global pass: L (S|G|D)* D.
 struct GlobalPhoton {
     Photon photon;
-    glm::vec3 shadingNormal{0.0F};
-    DiffuseLobe lobe;         ///< of the surface it landed on, for the directional weight
     Arrived arrived = Arrived::Otherwise;
 };
 
 struct RadianceMapOptions {
-    std::size_t maxPoints = 60'000;
     int neighbours = 24;      ///< photons in the density estimate
     float maxRadius = 0.2F;   ///< scene units
     int lampSamples = 4;      ///< shadow rays a point for its direct light
     std::uint64_t seed = 0;
 };
+
+/// Where gather rays from `points` land, after one D vertex or (a quarter of them) two: `count` tries, by key.
+[[nodiscard]] std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::vector<GatherPoint>& points, std::size_t count,
+                                                  std::uint64_t seed, const Workers& workers);
 
 class RadianceMap {
 public:
@@ -43,8 +46,8 @@ public:
         float radius = 0.0F;   ///< of the density estimate that made it, scene units
     };
 
-    RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& photons, const RadianceMapOptions& options,
-                const Workers& workers);
+    RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& photons, const std::vector<GatherPoint>& places,
+                const RadianceMapOptions& options, const Workers& workers);
     ~RadianceMap();
 
     /// The nearest precomputed point on a surface of this side within its own radius's reach; empty: none near enough.
