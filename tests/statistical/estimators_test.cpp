@@ -247,7 +247,7 @@ TEST(TexelIrradiance, CausticInAMirrorIsTheCausticSeenFromBehindIt) {
     };
     const Workers workers;
     const Scene direct(built(false), std::nullopt, SceneOptions{}, workers), mirrored(built(true), std::nullopt, SceneOptions{}, workers);
-    Rendering light{Method::Light, 32, 8};
+    Rendering light{Method::Light, 12, 6};
     light.width = light.height = 16;
     light.layers = {"classes"};
     Rendering reference = light;
