@@ -122,12 +122,15 @@ bool Subpath::advance(float coin) noexcept {
 std::optional<VertexValue> Subpath::valueTowards(const PathVertex& v, const glm::vec3& direction) const noexcept {
     const bool behind = glm::dot(direction, v.bsdf.geometricNormal()) < 0.0F;
     if (behind && v.horizon != glm::vec3(0.0F)) return std::nullopt;
+    const bool fromEye = from_ == From::Eye;
+    // From the eye most directions are found black before the other side's view of the surface is needed.
+    if (fromEye && isBlack(v.bsdf.eval(v.toPrevious, direction, kAllLobes, TransportMode::Radiance))) return std::nullopt;
     VertexValue value;
     const Bsdf other = scene_.surfaces().bsdf(v.hit.point, direction);
-    const Bsdf& viewer = from_ == From::Eye ? v.bsdf : other;
-    const glm::vec3& wo = from_ == From::Eye ? v.toPrevious : direction;
-    const glm::vec3& wi = from_ == From::Eye ? direction : v.toPrevious;
-    const float scale = from_ == From::Eye ? 1.0F : 1.0F / cosine(v.toPrevious, v.bsdf.geometricNormal());
+    const Bsdf& viewer = fromEye ? v.bsdf : other;
+    const glm::vec3& wo = fromEye ? v.toPrevious : direction;
+    const glm::vec3& wi = fromEye ? direction : v.toPrevious;
+    const float scale = fromEye ? 1.0F : 1.0F / cosine(v.toPrevious, v.bsdf.geometricNormal());
     const LobeKinds kinds = viewer.kinds();
     const bool single = (kinds & (kinds - 1)) == 0;
     float viewerPdf = 0.0F;
@@ -142,9 +145,9 @@ std::optional<VertexValue> Subpath::valueTowards(const PathVertex& v, const glm:
     }
     if (black) return std::nullopt;
     if (!single) viewerPdf = viewer.pdf(wo, wi, kAllLobes);
-    const float lampPdf = (from_ == From::Eye ? other : v.bsdf).pdf(wi, wo, kAllLobes);
-    value.pdfOnward = from_ == From::Eye ? viewerPdf : lampPdf;
-    value.pdfBack = from_ == From::Eye ? lampPdf : viewerPdf;
+    const float lampPdf = (fromEye ? other : v.bsdf).pdf(wi, wo, kAllLobes);
+    value.pdfOnward = fromEye ? viewerPdf : lampPdf;
+    value.pdfBack = fromEye ? lampPdf : viewerPdf;
     return value;
 }
 
