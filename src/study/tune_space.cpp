@@ -81,7 +81,8 @@ constexpr double kAutomaticShare = 0.5;  // of the coordinate
 void readRange(TuneOver& over, const Parameter& row, const std::string& range, const std::string& text) {
     const std::vector<std::string> ends = split(range, "..");
     const std::string mend = "write " + over.name + "=LOW..HIGH, such as " + over.name + "=" +
-                             rounded(row.tuning.high > 0.0 && !row.tuning.timesPlan ? row.tuning.low : 1.0, false) + ".." +
+                             rounded(row.tuning.high > 0.0 && !row.tuning.timesPlan ? row.tuning.low : 1.0, false) +
+                             ".." +
                              rounded(row.tuning.high > 0.0 && !row.tuning.timesPlan ? row.tuning.high : 100.0, false);
     if (ends.size() != 2 || !parseNumber(ends[0], over.low) || !parseNumber(ends[1], over.high)) refuse(text, mend);
     if (over.low >= over.high) refuse(text, "the low end must lie below the high end");
@@ -132,7 +133,8 @@ TuneGoal parseGoal(const std::string& text) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
     const bool known = name == "time" || name == "error";
-    if (!known || equals == std::string::npos || !parseNumber(text.substr(equals + 1), goal.value) || !(goal.value > 0.0))
+    if (!known || equals == std::string::npos || !parseNumber(text.substr(equals + 1), goal.value) ||
+        !(goal.value > 0.0))
         throw Error(ErrorKind::Usage, "'" + text + "' is no goal", "--for", "write error=0.02 or time=30");
     goal.kind = name == "time" ? TuneGoal::Kind::Time : TuneGoal::Kind::Error;
     return goal;
@@ -160,7 +162,8 @@ std::string Dimension::valueAt(double coordinate) const {
     if (!words.empty())
         return words[std::min(words.size() - 1, static_cast<std::size_t>(x * static_cast<double>(words.size())))];
     double value = row->logScale ? low * std::pow(high / low, x) : std::lerp(low, high, x);
-    if (const double step = row->tuning.step; step > 0.0) value = std::clamp(std::round(value / step) * step, low, high);
+    if (const double step = row->tuning.step; step > 0.0)
+        value = std::clamp(std::round(value / step) * step, low, high);
     return rounded(value, isWhole(*row));
 }
 
@@ -178,15 +181,20 @@ double Dimension::coordinateOf(const std::string& value) const {
 
 bool usesPass(const RenderRecord& plan, ParameterPass pass) {
     switch (pass) {
-        case ParameterPass::CausticMap: return plan.resolved.causticMap == "on";
-        case ParameterPass::Cache: return plan.resolved.cache == "on";
-        case ParameterPass::GlobalMap: return plan.resolved.cache == "on" && plan.resolved.globalPhotons > 0;
-        case ParameterPass::Any: break;
+        case ParameterPass::CausticMap:
+            return plan.resolved.causticMap == "on";
+        case ParameterPass::Cache:
+            return plan.resolved.cache == "on";
+        case ParameterPass::GlobalMap:
+            return plan.resolved.cache == "on" && plan.resolved.globalPhotons > 0;
+        case ParameterPass::Any:
+            break;
     }
     return true;
 }
 
-SearchSpace::SearchSpace(const std::vector<TuneOver>& over, const Settings& asked, const RenderRecord& plan, bool glossy)
+SearchSpace::SearchSpace(const std::vector<TuneOver>& over, const Settings& asked, const RenderRecord& plan,
+                         bool glossy)
     : byPlan_(over.empty()) {
     for (const Parameter& row : parameters()) {
         const auto named = std::ranges::find(over, row.name, &TuneOver::name);

@@ -1,5 +1,5 @@
-/// What the tuner may change and how: each parameter is a coordinate from 0 to 1 along its own scale, and a candidate is
-/// the list of the settings in which it departs from those asked for.
+/// What the tuner may change and how: each parameter is a coordinate from 0 to 1 along its own scale, and a candidate
+/// is the list of the settings in which it departs from those asked for.
 #pragma once
 
 #include <string>
@@ -29,8 +29,8 @@ struct Dimension {
     double low = 0.0, high = 0.0;
     std::vector<std::string> words;
     std::string standard;  ///< what the plan chose
-    /// The plan chose no number (a radius pixel by pixel, say): the lower half of the coordinate is "auto", the upper half
-    /// the range.
+    /// The plan chose no number (a radius pixel by pixel, say): the lower half of the coordinate is "auto", the upper
+    /// half the range.
     bool automatic = false;
 
     /// As --set takes it, with three significant digits.

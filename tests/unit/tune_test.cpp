@@ -86,7 +86,8 @@ TEST(TuneSpace, SearchesOnlyWhatThePlanUses) {
 }
 
 TEST(TuneSpace, ValuesAndCoordinatesAreInverse) {
-    const SearchSpace space(parseOver("cache.error=0.05..0.8,cache.rays,photon.alpha,photon.guiding=on|off"), Settings{}, planOf(true), false);
+    const SearchSpace space(parseOver("cache.error=0.05..0.8,cache.rays,photon.alpha,photon.guiding=on|off"),
+                            Settings{}, planOf(true), false);
     ASSERT_EQ(space.size(), 4U);
     for (const Dimension& d : space.dimensions())
         for (const double x : {0.0, 0.3, 0.77, 1.0}) {
@@ -110,7 +111,8 @@ TEST(TuneSpace, WhatThePlanDecidesPixelByPixelHasItsPlace) {
     EXPECT_TRUE(space.at({0.2}, "").set.empty());
     EXPECT_EQ(space.at({0.75}, "").set, (SettingList{{"photon.radius", "2"}}));
     EXPECT_EQ(space.at(space.coordinates({"", {}}), "").set, SettingList{});
-    EXPECT_EQ(space.at(space.coordinates({"", {{"photon.radius", "2"}}}), "").set, (SettingList{{"photon.radius", "2"}}));
+    EXPECT_EQ(space.at(space.coordinates({"", {{"photon.radius", "2"}}}), "").set,
+              (SettingList{{"photon.radius", "2"}}));
 }
 
 TEST(TuneSpace, PeersSettingsAreValidAndDropWhatIsLeftOut) {
