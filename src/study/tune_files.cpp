@@ -37,11 +37,10 @@ constexpr int kCurveSteps = 33;
     Json curve = Json::array();
     const Dimension& d = f.space.dimensions()[i];
     if (!f.search.model.valid() || !d.words.empty()) return curve;
-    const double standard = f.search.model.part(i, d.coordinateOf(d.standard));
+    const double standard = f.search.model.part(i, d.positionOf(d.standard));
     for (int k = 0; k < kCurveSteps; ++k) {
         const double x = static_cast<double>(k) / (kCurveSteps - 1);
-        if (const std::string value = d.valueAt(x); value != "auto")
-            curve.push_back({value, std::exp(f.search.model.part(i, x) - standard)});
+        curve.push_back({d.valueAt(x), std::exp(f.search.model.part(i, x) - standard)});
     }
     return curve;
 }
@@ -55,7 +54,7 @@ constexpr int kCurveSteps = 33;
             row.update({{"low", d.low}, {"high", d.high}, {"scale", d.row->logScale ? "log" : "linear"}});
         else
             row["words"] = d.words;
-        row["automatic"] = d.automatic;
+        row["automatic"] = d.words.empty() && !d.hasStandard();
         row["default"] = d.standard;
         row["tuned"] = valueIn(f.search.winner.candidate.set, d);
         const auto worth = std::ranges::find(f.search.worth, std::string(d.row->name), &Worth::name);
@@ -114,7 +113,7 @@ constexpr int kCurveSteps = 33;
             factors.push_back(std::exp(c.score[static_cast<std::size_t>(level)]));
         json.push_back({{"origin", c.candidate.origin},
                         {"settings", settingsJson(c.candidate.set)},
-                        {"coordinates", f.space.coordinates(c.candidate)},
+                        {"positions", f.space.positions(c.candidate)},
                         {"relmse_cost_over_default", factors}});
     }
     return json;

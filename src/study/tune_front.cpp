@@ -64,16 +64,22 @@ void fill(FrontPoint& point, const FrontPoint& standard) {
                                      IntervalScale::Log);
 }
 
+/// Of points that are the same (a budget below one iteration's cost gives the image of the next) the first stands for all.
 void markFront(Front& front) {
+    std::vector<FrontPoint*> points;
     for (Finalist& f : front.finalists)
-        for (FrontPoint& p : f.points) {
-            p.onFront = !p.relmse.empty();
-            for (const Finalist& g : front.finalists)
-                for (const FrontPoint& q : g.points)
-                    if (&q != &p && !q.relmse.empty() && q.seconds.value <= p.seconds.value &&
-                        q.error.value < p.error.value)
-                        p.onFront = false;
+        for (FrontPoint& p : f.points)
+            if (!p.relmse.empty()) points.push_back(&p);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        FrontPoint& p = *points[i];
+        p.onFront = true;
+        for (std::size_t j = 0; j < points.size(); ++j) {
+            const FrontPoint& q = *points[j];
+            const bool noSlower = q.seconds.value <= p.seconds.value, noWorse = q.error.value <= p.error.value;
+            const bool same = q.seconds.value == p.seconds.value && q.error.value == p.error.value;
+            if (j != i && noSlower && noWorse && (!same || j < i)) p.onFront = false;
         }
+    }
 }
 
 /// Log-log between measured points, and along the curve's slope of -1/2 in the error beyond them.

@@ -99,25 +99,35 @@ Candidate Search::sobolPoint() {
     return space_.at(x, "Sobol point");
 }
 
-/// Half of the coordinates move, by a triangular distance.
+/// Half of the parameters move, by a triangular distance; some of those that depart go back to the plan's choice.
 Candidate Search::neighbour(const Candidate& of, double reach) {
+    constexpr float kMoves = 0.5F, kReturns = 0.3F;
     Sampler sampler(kNeighbourKey + request_.seed, 0, neighbourIndex_++);
     Candidate moved{"near " + of.origin, of.set};
     if (moved.origin.starts_with("near near ")) moved.origin = moved.origin.substr(5);
-    const std::vector<double> x = space_.coordinates(of);
+    const std::vector<double> x = space_.positions(of);
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const glm::vec2 step = sampler.next2D();
-        const bool moves = sampler.next1D() < 0.5F || space_.size() == 1;
-        if (!moves) continue;
-        const double to = x[i] + (static_cast<double>(step.x + step.y) - 1.0) * 2.0 * reach;
+        const glm::vec2 step = sampler.next2D(), chance = sampler.next2D();
+        if (chance.x >= kMoves && space_.size() > 1) continue;
         const std::string name(space_.dimensions()[i].row->name);
-        const std::string value = space_.dimensions()[i].valueAt(to < 0.0 ? -to : to > 1.0 ? 2.0 - to : to);
-        const auto set = std::ranges::find(moved.set, name, &SettingList::value_type::first);
-        if (set != moved.set.end()) moved.set.erase(set);
-        if (value != "auto") moved.set.emplace_back(name, value);
+        const auto departs = [&](const auto& setting) { return setting.first == name; };
+        const bool departed = std::erase_if(moved.set, departs) > 0;
+        if (departed && chance.y < kReturns) continue;
+        const double to = x[i] + (static_cast<double>(step.x + step.y) - 1.0) * 2.0 * reach;
+        moved.set.emplace_back(name, space_.dimensions()[i].valueAt(to < 0.0 ? -to : to > 1.0 ? 2.0 - to : to));
     }
     inTableOrder(moved.set);
     return moved;
+}
+
+/// What the model expects to gain something by; the rest stays with the plan.
+Candidate Search::modelsBest(const AdditiveModel& model) const {
+    const std::vector<double> best = model.best(), standard = space_.positions({"default", {}});
+    Candidate c{"model", {}};
+    for (std::size_t i = 0; i < space_.size(); ++i)
+        if (model.part(i, standard[i]) - model.part(i, best[i]) > kIdle)
+            c.set.emplace_back(space_.dimensions()[i].row->name, space_.dimensions()[i].valueAt(best[i]));
+    return c;
 }
 
 std::vector<Candidate> Search::firstField(int size) {
@@ -133,7 +143,7 @@ std::vector<Candidate> Search::firstField(int size) {
 std::vector<Candidate> Search::nextField(int size) {
     std::vector<Candidate> field;
     const AdditiveModel model = fitted();
-    if (model.valid()) field.push_back(space_.at(model.best(), "model"));
+    if (model.valid()) field.push_back(modelsBest(model));
     const std::vector<const Contender*> best = ranked();
     const double reach = kFirstReach * std::pow(kReachFalls, rounds_);
     const auto wanted = static_cast<std::size_t>(size);
@@ -164,7 +174,7 @@ AdditiveModel Search::fitted() const {
     for (const auto& [name, contender] : known_) {
         if (!space_.contains(contender.candidate)) continue;
         for (int level = 0; level < contender.levels; ++level)
-            observations.push_back({space_.coordinates(contender.candidate),
+            observations.push_back({space_.positions(contender.candidate),
                                     contender.score[static_cast<std::size_t>(level)], std::pow(2.0, level)});
     }
     return {observations, space_.size()};
@@ -173,8 +183,7 @@ AdditiveModel Search::fitted() const {
 /// Takes back what gains nothing, one departure after another, those first of which the model expects least.
 bool Search::prune(SearchOutcome& outcome) {
     Contender& winner = outcome.winner;
-    const std::vector<double> own = space_.coordinates(winner.candidate),
-                              standard = space_.coordinates({"default", {}});
+    const std::vector<double> own = space_.positions(winner.candidate), standard = space_.positions({"default", {}});
     std::vector<std::pair<double, std::string>> order;
     for (const auto& [name, value] : winner.candidate.set) {
         double expected = 0.0;

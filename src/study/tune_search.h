@@ -60,6 +60,7 @@ private:
     [[nodiscard]] std::vector<Candidate> nextField(int size);
     [[nodiscard]] Candidate sobolPoint();
     [[nodiscard]] Candidate neighbour(const Candidate& of, double reach);
+    [[nodiscard]] Candidate modelsBest(const AdditiveModel& model) const;
     [[nodiscard]] std::vector<const Contender*> ranked() const;
     [[nodiscard]] AdditiveModel fitted() const;
     [[nodiscard]] bool prune(SearchOutcome& outcome);
