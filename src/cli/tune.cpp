@@ -47,8 +47,9 @@ int runTune(const TuneArguments& arguments) {
     progress.report = [&terminal](const ProgressReport& report) { terminal.report(report); };
     progress.interrupted = interruptAsked;
     catchInterrupts();
-    const TuneOutcome outcome =
-        tune(requestOf(arguments), [&shelf](const Settings& settings) { return shelf.scene(settings); }, workers, progress, log);
+    const TuneOutcome outcome = tune(
+        requestOf(arguments), [&shelf](const Settings& settings) { return shelf.scene(settings); }, workers, progress,
+        log);
     terminal.clear();
     if (!arguments.common.quiet && !outcome.text.empty()) printResult(outcome.text);
     return outcome.interrupted ? kInterrupted : 0;

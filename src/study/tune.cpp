@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <pellucid/base/error.h>
+#include <pellucid/io/image_file.h>
 #include <pellucid/io/plain_file.h>
 #include <pellucid/study/text_table.h>
 #include <pellucid/surface/material.h>
@@ -34,11 +35,21 @@ void makeFolders(const std::filesystem::path& folder) {
     });
 }
 
-[[nodiscard]] std::string journalKey(const TuneRequest& request, const TuneReference& reference, const std::string& hash) {
-    std::string key = "pellucid " + request.version + ", scene " + hash + ", reference " + reference.key + ", camera '" +
-                      request.camera + (request.iterations > 0 ? "', by rays" : "', by seconds");
+[[nodiscard]] std::string journalKey(const TuneRequest& request, const TuneReference& reference,
+                                     const std::string& hash) {
+    std::string key = "pellucid " + request.version + ", scene " + hash + ", reference " + reference.key +
+                      ", camera '" + request.camera + (request.iterations > 0 ? "', by rays" : "', by seconds");
     for (const auto& [name, value] : settingsAsText(request.settings)) key += ", " + name + "=" + value;
     return key;
+}
+
+/// The size of a given reference is the size of the renders, unless one is asked for, which must then be the same.
+[[nodiscard]] TuneRequest withReferenceSize(TuneRequest request) {
+    if (request.reference.empty() || request.width != 0 || request.height != 0) return request;
+    const Image reference = readImage(request.reference);
+    request.width = reference.width();
+    request.height = reference.height();
+    return request;
 }
 
 /// What the figures of this session do not deserve to hide.
@@ -46,14 +57,17 @@ void warnOf(const Front& front, const TuneRequest& request, const LogSink& log) 
     constexpr double kUneven = 1.3;
     if (front.seeds < 2)
         logTo(log, LogLevel::Warning,
-              "the budget sufficed for one seed of the finalists: their errors have no intervals; a larger --budget goes on from here");
+              "the budget sufficed for one seed of the finalists: their errors have no intervals; a larger --budget "
+              "goes on from here");
     double spread = 1.0;
     for (const Finalist& f : front.finalists)
         for (const FrontPoint& p : f.points)
-            if (!p.cost.empty()) spread = std::max(spread, std::ranges::max(p.cost) / std::max(1e-9, std::ranges::min(p.cost)));
+            if (!p.cost.empty())
+                spread = std::max(spread, std::ranges::max(p.cost) / std::max(1e-9, std::ranges::min(p.cost)));
     if (request.iterations == 0 && spread > kUneven)
         logTo(log, LogLevel::Warning,
-              "the same settings took up to " + figure(spread) + " times as long with another seed: this machine was busy, or --time " +
+              "the same settings took up to " + figure(spread) +
+                  " times as long with another seed: this machine was busy, or --time " +
                   "is less than one iteration takes; --iterations counts rays instead of seconds");
 }
 
@@ -61,7 +75,7 @@ void warnOf(const Front& front, const TuneRequest& request, const LogSink& log) 
 
 TuneOutcome tune(const TuneRequest& asked, const SceneSource& scenes, const Workers& workers, const Progress& progress,
                  const LogSink& log) {
-    const TuneRequest& request = asked;
+    const TuneRequest request = withReferenceSize(asked);
     const Scene& scene = scenes(request.settings).scene;
     makeFolders(request.folder);
 
@@ -74,7 +88,8 @@ TuneOutcome tune(const TuneRequest& asked, const SceneSource& scenes, const Work
     const RenderRecord plan = planOnly(scene, plain, workers);
     const SearchSpace space(request.over, request.settings, plan, isGlossy(scene));
 
-    const double referenceLimit = request.iterations > 0 ? kReferenceTimes * request.time : kReferenceShare * request.budget;
+    const double referenceLimit =
+        request.iterations > 0 ? kReferenceTimes * request.time : kReferenceShare * request.budget;
     const TuneReference reference = referenceFor(request, scenes, referenceLimit, workers, progress, log);
     if (reference.interrupted) return {"", true};
     if (!reference.remark.empty()) logTo(log, LogLevel::Warning, reference.remark);
@@ -86,11 +101,14 @@ TuneOutcome tune(const TuneRequest& asked, const SceneSource& scenes, const Work
     Search search(request, space, peers, runner, kSearchShare * request.budget);
     const std::optional<SearchOutcome> found = search.run();
     if (!found) return {"", true};
-    const std::optional<Front> front = measureFinalists(request, *found, space, peers, runner, kFinalShare * request.budget);
+    const std::optional<Front> front =
+        measureFinalists(request, *found, space, peers, runner, kFinalShare * request.budget);
     if (!front) return {"", true};
 
     warnOf(*front, request, log);
-    TuneFindings findings{request, space, reference, *found, *front, request.goal.value_or(TuneGoal{TuneGoal::Kind::Time, request.time}), {}, ""};
+    TuneFindings findings{request, space,  reference,
+                          *found,  *front, request.goal.value_or(TuneGoal{TuneGoal::Kind::Time, request.time}),
+                          {},      ""};
     findings.choice = choose(*front, findings.goal);
     const SettingList& set = front->finalists[findings.choice.finalist].candidate.set;
     findings.sceneHash = scenes(withSettings(request.settings, set)).scene.hash();

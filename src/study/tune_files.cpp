@@ -37,10 +37,10 @@ constexpr int kCurveSteps = 33;
     Json curve = Json::array();
     const Dimension& d = f.space.dimensions()[i];
     if (!f.search.model.valid() || !d.words.empty()) return curve;
-    const double standard = f.search.model.part(i, d.coordinateOf(d.standard));
+    const double standard = f.search.model.part(i, d.positionOf(d.standard));
     for (int k = 0; k < kCurveSteps; ++k) {
         const double x = static_cast<double>(k) / (kCurveSteps - 1);
-        if (const std::string value = d.valueAt(x); value != "auto") curve.push_back({value, std::exp(f.search.model.part(i, x) - standard)});
+        curve.push_back({d.valueAt(x), std::exp(f.search.model.part(i, x) - standard)});
     }
     return curve;
 }
@@ -54,11 +54,12 @@ constexpr int kCurveSteps = 33;
             row.update({{"low", d.low}, {"high", d.high}, {"scale", d.row->logScale ? "log" : "linear"}});
         else
             row["words"] = d.words;
-        row["automatic"] = d.automatic;
+        row["automatic"] = d.words.empty() && !d.hasStandard();
         row["default"] = d.standard;
         row["tuned"] = valueIn(f.search.winner.candidate.set, d);
         const auto worth = std::ranges::find(f.search.worth, std::string(d.row->name), &Worth::name);
-        if (worth != f.search.worth.end()) row.update({{"worth", numberAs<Json>(std::exp(worth->gain))}, {"kept", worth->kept}});
+        if (worth != f.search.worth.end())
+            row.update({{"worth", numberAs<Json>(std::exp(worth->gain))}, {"kept", worth->kept}});
         row["curve"] = curveJson(f, i);
         json.push_back(std::move(row));
     }
@@ -77,7 +78,10 @@ constexpr int kCurveSteps = 33;
 [[nodiscard]] Json finalistsJson(const Front& front) {
     Json json = Json::array();
     for (const Finalist& f : front.finalists) {
-        Json row{{"name", f.name}, {"origin", f.candidate.origin}, {"settings", settingsJson(f.candidate.set)}, {"may_win", f.mayWin}};
+        Json row{{"name", f.name},
+                 {"origin", f.candidate.origin},
+                 {"settings", settingsJson(f.candidate.set)},
+                 {"may_win", f.mayWin}};
         row["points"] = Json::array();
         for (const FrontPoint& p : f.points)
             if (!p.relmse.empty()) row["points"].push_back(pointJson(p));
@@ -105,10 +109,11 @@ constexpr int kCurveSteps = 33;
     Json json = Json::array();
     for (const Contender& c : f.search.contenders) {
         Json factors = Json::array();
-        for (int level = 0; level < c.levels; ++level) factors.push_back(std::exp(c.score[static_cast<std::size_t>(level)]));
+        for (int level = 0; level < c.levels; ++level)
+            factors.push_back(std::exp(c.score[static_cast<std::size_t>(level)]));
         json.push_back({{"origin", c.candidate.origin},
                         {"settings", settingsJson(c.candidate.set)},
-                        {"coordinates", f.space.coordinates(c.candidate)},
+                        {"positions", f.space.positions(c.candidate)},
                         {"relmse_cost_over_default", factors}});
     }
     return json;
@@ -148,7 +153,8 @@ std::string frontJson(const TuneFindings& f) {
         json["iterations"] = f.request.iterations;
     else
         json["budget"] = f.request.budget;
-    json.update({{"rounds", f.search.rounds}, {"seed", f.request.seed}, {"seeds", f.front.seeds}, {"confidence", kConfidence}});
+    json.update(
+        {{"rounds", f.search.rounds}, {"seed", f.request.seed}, {"seeds", f.front.seeds}, {"confidence", kConfidence}});
     json["reference"] = {{"file", f.reference.name}, {"remark", f.reference.remark}};
     json["goal"] = {{"kind", f.goal.kind == TuneGoal::Kind::Time ? "time" : "error"}, {"value", f.goal.value}};
     json["chosen"] = {{"name", chosen.name},
@@ -177,7 +183,8 @@ std::string tunedToml(const TuneFindings& f) {
             text += own[i].first + " = " + (isWord(own[i].second) ? quoted(own[i].second) : own[i].second) + "\n";
     text += "\n[tuned]  # sets nothing: what was measured, and where\n";
     text += "scene = " + quoted(scene) + "\nscene_hash = " + quoted(f.sceneHash) + "\n";
-    text += "width = " + std::to_string(f.reference.mean.width()) + "\nheight = " + std::to_string(f.reference.mean.height()) + "\n";
+    text += "width = " + std::to_string(f.reference.mean.width()) +
+            "\nheight = " + std::to_string(f.reference.mean.height()) + "\n";
     text += "camera = " + quoted(f.request.camera) + "\nsettings = " + quoted(chosen.name) + "\n";
     text += "seconds = " + figure(f.choice.seconds) + "\nerror = " + figure(f.choice.error) + "\n";
     text += "seconds_are = " + quoted(unitOf(f.request)) + "\nseeds = " + std::to_string(f.front.seeds) + "\n";
@@ -193,13 +200,16 @@ std::string tuneText(const TuneFindings& f) {
     for (const Finalist& finalist : f.front.finalists)
         for (const FrontPoint& p : finalist.points)
             if (!p.relmse.empty())
-                table.add({finalist.name + (p.onFront ? " *" : ""), figure(p.seconds.value), range(p.error, 100.0), range(p.ratio, 1.0)});
+                table.add({finalist.name + (p.onFront ? " *" : ""), figure(p.seconds.value), range(p.error, 100.0),
+                           range(p.ratio, 1.0)});
     std::string text = table.text() + "* on the front\n\n";
     for (const Worth& w : f.search.worth)
-        text += w.name + (w.kept ? ": without it the tuned settings need " + figure(std::exp(w.gain)) + " times the time\n"
-                                 : ": taken back, it gained too little (" + figure(std::exp(w.gain)) + ")\n");
+        text +=
+            w.name + (w.kept ? ": without it the tuned settings need " + figure(std::exp(w.gain)) + " times the time\n"
+                             : ": taken back, it gained too little (" + figure(std::exp(w.gain)) + ")\n");
     if (!f.choice.reached)
-        text += "No settings reach an error of " + figure(100.0 * f.goal.value) + " % within the measured times; nearest are:\n";
+        text += "No settings reach an error of " + figure(100.0 * f.goal.value) +
+                " % within the measured times; nearest are:\n";
     text += "tuned.toml: " + chosen.name + ", " + textOf(chosen.candidate.set) + "\n";
     if (!f.reference.remark.empty()) text += "note: " + printable(f.reference.remark) + "\n";
     return text;

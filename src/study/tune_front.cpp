@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<double, 4> kTimeShare{0.125, 0.25, 0.5, 1.0};
 constexpr int kMostSeeds = 8, kSeedsOfIterations = 4;
-constexpr int kPeersSeeds = 2;       // peers' settings are marks on the front, not contenders for it
+constexpr int kPeersSeeds = 2;  // peers' settings are marks on the front, not contenders for it
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[nodiscard]] std::vector<Finalist> finalistsOf(const SearchOutcome& search, const SearchSpace& space,
@@ -24,7 +24,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
     add("tuned", search.winner.candidate, true);
     if (search.quick) add("quick", search.quick->candidate, true);
     for (const Contender& c : search.contenders)
-        if (c.levels == kLevels && c.candidate.set != search.contenders.front().candidate.set && c.score[kLevels - 1] < 0.0) {
+        if (c.levels == kLevels && c.candidate.set != search.contenders.front().candidate.set &&
+            c.score[kLevels - 1] < 0.0) {
             add("runner-up", c.candidate, true);
             break;
         }
@@ -48,7 +49,8 @@ void fill(FrontPoint& point, const FrontPoint& standard) {
     const auto count = static_cast<int>(point.relmse.size());
     const SeedBootstrap bootstrap(count);
     const auto mean = [&](const std::vector<double>& values) {
-        return bootstrap.interval([&](SeedCounts c) { return std::max(1e-12, countedMean(values, c)); }, IntervalScale::Log);
+        return bootstrap.interval([&](SeedCounts c) { return std::max(1e-12, countedMean(values, c)); },
+                                  IntervalScale::Log);
     };
     const Interval relmse = mean(point.relmse);
     point.error = {std::sqrt(relmse.value), std::sqrt(relmse.low), std::sqrt(relmse.high)};
@@ -58,18 +60,26 @@ void fill(FrontPoint& point, const FrontPoint& standard) {
         for (std::size_t i = 0; i < c.size(); ++i) sum += c[i] * std::max(1e-12, p.relmse[i]) * p.cost[i];
         return sum;
     };
-    point.ratio = bootstrap.interval([&](SeedCounts c) { return efficiency(point, c) / efficiency(standard, c); }, IntervalScale::Log);
+    point.ratio = bootstrap.interval([&](SeedCounts c) { return efficiency(point, c) / efficiency(standard, c); },
+                                     IntervalScale::Log);
 }
 
+/// Of points that are the same (a budget below one iteration's cost gives the image of the next) the first stands for all.
 void markFront(Front& front) {
+    std::vector<FrontPoint*> points;
     for (Finalist& f : front.finalists)
-        for (FrontPoint& p : f.points) {
-            p.onFront = !p.relmse.empty();
-            for (const Finalist& g : front.finalists)
-                for (const FrontPoint& q : g.points)
-                    if (&q != &p && !q.relmse.empty() && q.seconds.value <= p.seconds.value && q.error.value < p.error.value)
-                        p.onFront = false;
+        for (FrontPoint& p : f.points)
+            if (!p.relmse.empty()) points.push_back(&p);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        FrontPoint& p = *points[i];
+        p.onFront = true;
+        for (std::size_t j = 0; j < points.size(); ++j) {
+            const FrontPoint& q = *points[j];
+            const bool noSlower = q.seconds.value <= p.seconds.value, noWorse = q.error.value <= p.error.value;
+            const bool same = q.seconds.value == p.seconds.value && q.error.value == p.error.value;
+            if (j != i && noSlower && noWorse && (!same || j < i)) p.onFront = false;
         }
+    }
 }
 
 /// Log-log between measured points, and along the curve's slope of -1/2 in the error beyond them.
@@ -79,7 +89,8 @@ void markFront(Front& front) {
         if (p.relmse.empty()) continue;
         if (p.seconds.value >= seconds) {
             if (before == nullptr) return p.error.value * std::sqrt(p.seconds.value / seconds);
-            const double share = std::log(seconds / before->seconds.value) / std::log(p.seconds.value / before->seconds.value);
+            const double share =
+                std::log(seconds / before->seconds.value) / std::log(p.seconds.value / before->seconds.value);
             return before->error.value * std::pow(p.error.value / before->error.value, share);
         }
         before = &p;
@@ -97,21 +108,52 @@ void markFront(Front& front) {
     return timeToError(seconds, relmse, error);
 }
 
-/// A departure from the default has to be surer than chance: the mean of the log ratios over the seeds lies below 0 by more
-/// than its standard error.
+/// A departure from the default has to be surer than chance: the mean of the log ratios over the seeds lies below 0 by
+/// more than its standard error.
 [[nodiscard]] bool surelyBetter(const Finalist& f, const Finalist& standard) {
     const FrontPoint &own = f.points.back(), &base = standard.points.back();
     const std::size_t n = std::min(own.relmse.size(), base.relmse.size());
     if (n == 0) return false;
     double sum = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-        const double r = std::log(std::max(1e-12, own.relmse[i]) * own.cost[i] / (std::max(1e-12, base.relmse[i]) * base.cost[i]));
+        const double r =
+            std::log(std::max(1e-12, own.relmse[i]) * own.cost[i] / (std::max(1e-12, base.relmse[i]) * base.cost[i]));
         sum += r;
         squares += r * r;
     }
     const double count = static_cast<double>(n), mean = sum / count;
     const double deviation = n > 1 ? std::sqrt(std::max(0.0, squares / count - mean * mean) / (count - 1.0)) : 0.0;
     return mean + deviation < -0.02;
+}
+
+/// Renders one seed of all finalists; false when interrupted.
+[[nodiscard]] bool measureSeed(Front& front, int k, int most, const TuneRequest& request,
+                               const std::vector<Candidate>& peers, TrialRunner& runner, double limit) {
+    for (Finalist& f : front.finalists)
+        for (std::size_t i = 0; i < f.points.size(); ++i) {
+            if (!wanted(f, i, k, peers)) continue;
+            const bool last = i + 1 == f.points.size(), shown = f.name == "default" || f.name == "tuned";
+            // Whatever is left, the default and the tuned settings are rendered once for the whole time.
+            if (!(last && shown) && k == 0 && request.iterations == 0 && runner.spent() > limit) continue;
+            const double share = request.iterations > 0 ? 0.6 + 0.4 * k / most : runner.spent() / request.budget;
+            runner.setStage("finalists, seed " + std::to_string(k + 1) + ", " + f.name, std::min(1.0, share));
+            const TrialPlan plan{f.points[i].time, kWholeImage, request.seed + static_cast<std::uint64_t>(k)};
+            const auto trial = runner.run(f.candidate, plan, last && shown && k == 0 ? f.name : "");
+            if (!trial) return false;
+            f.points[i].relmse.push_back(trial->relmse);
+            f.points[i].cost.push_back(trial->cost);
+        }
+    return true;
+}
+
+/// A seed that was interrupted counts for nobody.
+void dropUnfinished(Front& front) {
+    for (Finalist& f : front.finalists)
+        for (FrontPoint& p : f.points) {
+            const auto seeds = std::min(p.relmse.size(), static_cast<std::size_t>(front.seeds));
+            p.relmse.resize(seeds);
+            p.cost.resize(seeds);
+        }
 }
 
 }  // namespace
@@ -124,38 +166,17 @@ std::optional<Front> measureFinalists(const TuneRequest& request, const SearchOu
         for (FrontPoint& p : f.points) p.time *= request.time;
     const int most = request.iterations > 0 ? kSeedsOfIterations : kMostSeeds;
     double before = runner.spent(), ofSeed = 0.0;
-    for (int k = 0; k < most; ++k) {
-        if (k > 0 && request.iterations == 0 && runner.spent() + ofSeed > limit) break;
-        for (Finalist& f : front.finalists)
-            for (std::size_t i = 0; i < f.points.size(); ++i) {
-                if (!wanted(f, i, k, peers)) continue;
-                // Whatever is left, the default and the tuned settings are rendered once for the whole time.
-                const bool needed = i + 1 == f.points.size() && (f.name == "default" || f.name == "tuned");
-                if (!needed && k == 0 && request.iterations == 0 && runner.spent() > limit) continue;
-                runner.setStage("finalists, seed " + std::to_string(k + 1) + ", " + f.name,
-                                request.iterations > 0 ? 0.6 + 0.4 * k / most : std::min(1.0, runner.spent() / request.budget));
-                const bool pictured = k == 0 && i + 1 == f.points.size() && (f.name == "default" || f.name == "tuned");
-                const auto trial = runner.run(f.candidate, {f.points[i].time, kWholeImage, request.seed + static_cast<std::uint64_t>(k)},
-                                              pictured ? f.name : "");
-                if (!trial) {
-                    if (k == 0) return std::nullopt;
-                    break;
-                }
-                f.points[i].relmse.push_back(trial->relmse);
-                f.points[i].cost.push_back(trial->cost);
-            }
-        if (runner.interrupted()) break;
-        front.seeds = k + 1;
+    while (front.seeds < most) {
+        if (front.seeds > 0 && request.iterations == 0 && runner.spent() + ofSeed > limit) break;
+        if (!measureSeed(front, front.seeds, most, request, peers, runner, limit)) {
+            if (front.seeds == 0) return std::nullopt;
+            break;
+        }
+        ++front.seeds;
         ofSeed = runner.spent() - before;
         before = runner.spent();
     }
-    // A seed that was interrupted counts for nobody.
-    for (Finalist& f : front.finalists)
-        for (FrontPoint& p : f.points) {
-            const auto seeds = std::min(p.relmse.size(), static_cast<std::size_t>(front.seeds));
-            p.relmse.resize(seeds);
-            p.cost.resize(seeds);
-        }
+    dropUnfinished(front);
     for (Finalist& f : front.finalists)
         for (std::size_t i = 0; i < f.points.size(); ++i) fill(f.points[i], front.finalists.front().points[i]);
     markFront(front);

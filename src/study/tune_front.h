@@ -1,5 +1,5 @@
-/// The finalists on whole images and fresh seeds: error against time with confidence, the Pareto front, and the point of it
-/// that is wanted.
+/// The finalists on whole images and fresh seeds: error against time with confidence, the Pareto front, and the point
+/// of it that is wanted.
 #pragma once
 
 #include <optional>
@@ -14,15 +14,15 @@ namespace pellucid {
 
 /// One finalist at one budget.
 struct FrontPoint {
-    double time = 0.0;            ///< budget
+    double time = 0.0;                 ///< budget
     std::vector<double> relmse, cost;  ///< by seed
-    Interval error, seconds;      ///< root of the mean relmse; mean cost
-    Interval ratio;               ///< relmse x cost over the default's, same seeds
-    bool onFront = false;         ///< nothing measured is both faster and better
+    Interval error, seconds;           ///< root of the mean relmse; mean cost
+    Interval ratio;                    ///< relmse x cost over the default's, same seeds
+    bool onFront = false;              ///< nothing measured is both faster and better
 };
 
 struct Finalist {
-    std::string name;             ///< "default", "tuned", "quick", "runner-up", or a peer's
+    std::string name;  ///< "default", "tuned", "quick", "runner-up", or a peer's
     Candidate candidate;
     bool mayWin = true;
     std::vector<FrontPoint> points;  ///< by rising time

@@ -7,7 +7,7 @@
 namespace pellucid {
 namespace {
 
-constexpr double kRidge = 0.02;         // in units of one observation of weight 1
+constexpr double kRidge = 0.02;               // in units of one observation of weight 1
 constexpr double kLeast = -2.0, kMost = 2.5;  // outliers say no more than that they are bad
 
 /// Solves A x = b for a symmetric positive definite A by Cholesky's decomposition; A is n x n in rows.

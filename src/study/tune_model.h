@@ -1,6 +1,6 @@
-/// A picture of how the error depends on each parameter: log(error / default's error) at equal cost as a sum of one parabola
-/// a coordinate, fitted to the trials by ridge regression. It proposes candidates and draws the report's curves; what is
-/// claimed of a parameter is measured (see tune_search.h), not read off this fit.
+/// A picture of how the error depends on each parameter: log(error / default's error) at equal cost as a sum of one
+/// parabola a coordinate, fitted to the trials by ridge regression. It proposes candidates and draws the report's
+/// curves; what is claimed of a parameter is measured (see tune_search.h), not read off this fit.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@ namespace pellucid {
 
 struct Observation {
     std::vector<double> coordinates;
-    double score = 0.0;   ///< log of relmse x cost, relative to the default's
+    double score = 0.0;  ///< log of relmse x cost, relative to the default's
     double weight = 1.0;
 };
 

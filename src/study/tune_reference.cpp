@@ -49,14 +49,16 @@ struct HalfState {
     const Json json = Json::parse(text, nullptr, false);
     try {
         if (json.is_discarded() || json.at("key").get<std::string>() != key) return fresh;
-        return {key, json.at("samples").get<std::uint32_t>(), json.at("spent").get<double>(), json.at("done").get<bool>()};
+        return {key, json.at("samples").get<std::uint32_t>(), json.at("spent").get<double>(),
+                json.at("done").get<bool>()};
     } catch (const nlohmann::json::exception&) {
         return fresh;
     }
 }
 
 void writeState(const std::filesystem::path& file, const HalfState& state) {
-    writeFile(file, dumped(Json{{"key", state.key}, {"samples", state.samples}, {"spent", state.spent}, {"done", state.done}}));
+    writeFile(file, dumped(Json{
+                        {"key", state.key}, {"samples", state.samples}, {"spent", state.spent}, {"done", state.done}}));
 }
 
 /// Reference, or, where that is blind, photon maps without a cache: its bias falls with every iteration.
@@ -74,7 +76,8 @@ void writeState(const std::filesystem::path& file, const HalfState& state) {
     render.settings.cache = "off";
     render.settings.causticMap = "on";
     render.settings.alpha = 2.0 / 3.0;
-    remark = "the reference is a photon render without a cache, since no unbiased method sees " + plan.blindSpots.front();
+    remark =
+        "the reference is a photon render without a cache, since no unbiased method sees " + plan.blindSpots.front();
     return render;
 }
 
@@ -123,8 +126,7 @@ void writeState(const std::filesystem::path& file, const HalfState& state) {
     const std::array<int, 3> ca = colourChannels(a), cb = colourChannels(b);
     Image mean(a.width(), a.height(), {"R", "G", "B"});
     for (std::size_t i = 0; i < a.pixels(); ++i)
-        for (std::size_t c = 0; c < 3; ++c)
-            mean.at(i, static_cast<int>(c)) = 0.5F * (a.at(i, ca[c]) + b.at(i, cb[c]));
+        for (std::size_t c = 0; c < 3; ++c) mean.at(i, static_cast<int>(c)) = 0.5F * (a.at(i, ca[c]) + b.at(i, cb[c]));
     return mean;
 }
 
@@ -137,10 +139,11 @@ void writeState(const std::filesystem::path& file, const HalfState& state) {
         throw Error(ErrorKind::BadInput,
                     "the reference is " + std::to_string(reference.mean.width()) + "x" +
                         std::to_string(reference.mean.height()),
-                    request.reference.string(), "give --size the same");
+                    request.reference.string(), "leave out --size, or give the reference's");
     const auto noise = referenceNoise(reference.mean);
     reference.noise = noise.value_or(0.0);
-    if (!noise) reference.remark = "the reference has no layers variance.*: its own noise counts as error of every render";
+    if (!noise)
+        reference.remark = "the reference has no layers variance.*: its own noise counts as error of every render";
     reference.weigh();
     return reference;
 }
@@ -214,8 +217,9 @@ TuneReference referenceFor(const TuneRequest& request, const SceneSource& scenes
     const RenderRequest render = methodFor(request, loaded.scene, workers, reference.remark);
     std::string settings;
     for (const auto& [name, value] : settingsAsText(render.settings)) settings += name + "=" + value + ";";
-    reference.key = "pellucid " + request.version + ", scene " + loaded.scene.hash() + ", " + std::to_string(camera.width()) +
-                    "x" + std::to_string(camera.height()) + ", camera '" + request.camera + "', settings " + hashText(settings) +
+    reference.key = "pellucid " + request.version + ", scene " + loaded.scene.hash() + ", " +
+                    std::to_string(camera.width()) + "x" + std::to_string(camera.height()) + ", camera '" +
+                    request.camera + "', settings " + hashText(settings) +
                     (request.iterations > 0 ? ", by rays" : ", by seconds");
     reference.name = "reference.exr";
     Progress inner = progress;
@@ -226,7 +230,8 @@ TuneReference referenceFor(const TuneRequest& request, const SceneSource& scenes
         };
     Image halves[2];
     for (int half = 0; half < 2; ++half) {
-        halves[half] = renderHalf(render, half, reference.key, request, loaded.scene, 0.5 * limit, workers, inner, log, reference);
+        halves[half] =
+            renderHalf(render, half, reference.key, request, loaded.scene, 0.5 * limit, workers, inner, log, reference);
         if (reference.interrupted) return reference;
     }
     reference.first = std::move(halves[0]);

@@ -9,18 +9,18 @@ namespace pellucid {
 namespace {
 
 constexpr std::array<double, kLevels> kTimeShare{0.25, 0.5, 1.0};
-constexpr int kSurvivors = 3;        // one of so many goes on to the next level
+constexpr int kSurvivors = 3;  // one of so many goes on to the next level
 constexpr int kFirstField = 27, kNextField = 9, kLeastField = 4;
-constexpr double kLeastRatio = 0.02; // a relmse so far below the default's is noise of the reference
-constexpr double kIdle = 0.02;       // a departure that gains less than 2 % is taken back
-constexpr double kPruneShare = 0.1;  // of the budget, for finding that out
+constexpr double kLeastRatio = 0.02;  // a relmse so far below the default's is noise of the reference
+constexpr double kIdle = 0.02;        // a departure that gains less than 2 % is taken back
+constexpr double kPruneShare = 0.1;   // of the budget, for finding that out
 constexpr double kFirstReach = 0.35, kReachFalls = 0.75;
 constexpr std::uint64_t kSearchKey = 0x736561726368ULL, kSobolKey = 0x736f626f6cULL, kNeighbourKey = 0x6e656172ULL;
 
 }  // namespace
 
-Search::Search(const TuneRequest& request, const SearchSpace& space, const std::vector<Candidate>& peers, TrialRunner& runner,
-               double limit)
+Search::Search(const TuneRequest& request, const SearchSpace& space, const std::vector<Candidate>& peers,
+               TrialRunner& runner, double limit)
     : request_(request), space_(space), peers_(peers), runner_(runner), limit_(limit) {}
 
 std::vector<TrialPlan> Search::plansOf(int level) const {
@@ -51,7 +51,8 @@ bool Search::timeLeft() const { return request_.iterations > 0 || runner_.spent(
 int Search::affordable() const {
     if (request_.iterations > 0) return kFirstField;
     double each = 0.0, share = 1.0;
-    for (int level = 0; level < kLevels; ++level, share /= kSurvivors) each += share * levelSeconds_[static_cast<std::size_t>(level)];
+    for (int level = 0; level < kLevels; ++level, share /= kSurvivors)
+        each += share * levelSeconds_[static_cast<std::size_t>(level)];
     return static_cast<int>(std::min(1e6, (limit_ - runner_.spent()) / std::max(1e-6, each)));
 }
 
@@ -98,25 +99,35 @@ Candidate Search::sobolPoint() {
     return space_.at(x, "Sobol point");
 }
 
-/// Half of the coordinates move, by a triangular distance.
+/// Half of the parameters move, by a triangular distance; some of those that depart go back to the plan's choice.
 Candidate Search::neighbour(const Candidate& of, double reach) {
+    constexpr float kMoves = 0.5F, kReturns = 0.3F;
     Sampler sampler(kNeighbourKey + request_.seed, 0, neighbourIndex_++);
     Candidate moved{"near " + of.origin, of.set};
     if (moved.origin.starts_with("near near ")) moved.origin = moved.origin.substr(5);
-    const std::vector<double> x = space_.coordinates(of);
+    const std::vector<double> x = space_.positions(of);
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const glm::vec2 step = sampler.next2D();
-        const bool moves = sampler.next1D() < 0.5F || space_.size() == 1;
-        if (!moves) continue;
-        const double to = x[i] + (static_cast<double>(step.x + step.y) - 1.0) * 2.0 * reach;
+        const glm::vec2 step = sampler.next2D(), chance = sampler.next2D();
+        if (chance.x >= kMoves && space_.size() > 1) continue;
         const std::string name(space_.dimensions()[i].row->name);
-        const std::string value = space_.dimensions()[i].valueAt(to < 0.0 ? -to : to > 1.0 ? 2.0 - to : to);
-        const auto set = std::ranges::find(moved.set, name, &SettingList::value_type::first);
-        if (set != moved.set.end()) moved.set.erase(set);
-        if (value != "auto") moved.set.emplace_back(name, value);
+        const auto departs = [&](const auto& setting) { return setting.first == name; };
+        const bool departed = std::erase_if(moved.set, departs) > 0;
+        if (departed && chance.y < kReturns) continue;
+        const double to = x[i] + (static_cast<double>(step.x + step.y) - 1.0) * 2.0 * reach;
+        moved.set.emplace_back(name, space_.dimensions()[i].valueAt(to < 0.0 ? -to : to > 1.0 ? 2.0 - to : to));
     }
     inTableOrder(moved.set);
     return moved;
+}
+
+/// What the model expects to gain something by; the rest stays with the plan.
+Candidate Search::modelsBest(const AdditiveModel& model) const {
+    const std::vector<double> best = model.best(), standard = space_.positions({"default", {}});
+    Candidate c{"model", {}};
+    for (std::size_t i = 0; i < space_.size(); ++i)
+        if (model.part(i, standard[i]) - model.part(i, best[i]) > kIdle)
+            c.set.emplace_back(space_.dimensions()[i].row->name, space_.dimensions()[i].valueAt(best[i]));
+    return c;
 }
 
 std::vector<Candidate> Search::firstField(int size) {
@@ -132,7 +143,7 @@ std::vector<Candidate> Search::firstField(int size) {
 std::vector<Candidate> Search::nextField(int size) {
     std::vector<Candidate> field;
     const AdditiveModel model = fitted();
-    if (model.valid()) field.push_back(space_.at(model.best(), "model"));
+    if (model.valid()) field.push_back(modelsBest(model));
     const std::vector<const Contender*> best = ranked();
     const double reach = kFirstReach * std::pow(kReachFalls, rounds_);
     const auto wanted = static_cast<std::size_t>(size);
@@ -163,8 +174,8 @@ AdditiveModel Search::fitted() const {
     for (const auto& [name, contender] : known_) {
         if (!space_.contains(contender.candidate)) continue;
         for (int level = 0; level < contender.levels; ++level)
-            observations.push_back({space_.coordinates(contender.candidate), contender.score[static_cast<std::size_t>(level)],
-                                    std::pow(2.0, level)});
+            observations.push_back({space_.positions(contender.candidate),
+                                    contender.score[static_cast<std::size_t>(level)], std::pow(2.0, level)});
     }
     return {observations, space_.size()};
 }
@@ -172,12 +183,13 @@ AdditiveModel Search::fitted() const {
 /// Takes back what gains nothing, one departure after another, those first of which the model expects least.
 bool Search::prune(SearchOutcome& outcome) {
     Contender& winner = outcome.winner;
-    const std::vector<double> own = space_.coordinates(winner.candidate), standard = space_.coordinates({"default", {}});
+    const std::vector<double> own = space_.positions(winner.candidate), standard = space_.positions({"default", {}});
     std::vector<std::pair<double, std::string>> order;
     for (const auto& [name, value] : winner.candidate.set) {
         double expected = 0.0;
         for (std::size_t i = 0; i < space_.size() && outcome.model.valid(); ++i)
-            if (space_.dimensions()[i].row->name == name) expected = outcome.model.part(i, standard[i]) - outcome.model.part(i, own[i]);
+            if (space_.dimensions()[i].row->name == name)
+                expected = outcome.model.part(i, standard[i]) - outcome.model.part(i, own[i]);
         order.emplace_back(expected, name);
     }
     std::ranges::stable_sort(order);
@@ -199,7 +211,8 @@ bool Search::prune(SearchOutcome& outcome) {
 }
 
 void Search::tellStage(const std::string& what) {
-    const double used = request_.iterations > 0 ? 0.6 * rounds_ / request_.iterations : runner_.spent() / request_.budget;
+    const double used =
+        request_.iterations > 0 ? 0.6 * rounds_ / request_.iterations : runner_.spent() / request_.budget;
     runner_.setStage(what, std::min(1.0, used));
 }
 
@@ -208,10 +221,12 @@ std::optional<SearchOutcome> Search::run() {
     for (int level = 0; level < kLevels; ++level) {
         tellStage("default");
         if (!score(standard.candidate, level)) return std::nullopt;
-        for (const TrialPlan& plan : plansOf(level)) levelSeconds_[static_cast<std::size_t>(level)] += runner_.run(standard.candidate, plan)->spent;
+        for (const TrialPlan& plan : plansOf(level))
+            levelSeconds_[static_cast<std::size_t>(level)] += runner_.run(standard.candidate, plan)->spent;
     }
     known_.emplace("default", standard);
-    // The default's own renders may have used the budget up: then there is nothing to search with, and the default stands.
+    // The default's own renders may have used the budget up: then there is nothing to search with, and the default
+    // stands.
     if (timeLeft() && !round(firstField(std::clamp(affordable(), kLeastField, kFirstField)))) return std::nullopt;
     const auto more = [this] {
         return request_.iterations > 0 ? rounds_ < request_.iterations : timeLeft() && affordable() >= kLeastField;

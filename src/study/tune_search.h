@@ -1,6 +1,7 @@
-/// The search: rounds of successive halving [Jamieson2016] on windows of the image. Every candidate is rendered with the
-/// same seeds on the same windows as the default (common random numbers), and judged by relmse x cost over the default's:
-/// what is compared is efficiency at one time, so a render that ends early or late is neither helped nor hurt.
+/// The search: rounds of successive halving [Jamieson2016] on windows of the image. Every candidate is rendered with
+/// the same seeds on the same windows as the default (common random numbers), and judged by relmse x cost over the
+/// default's: what is compared is efficiency at one time, so a render that ends early or late is neither helped nor
+/// hurt.
 #pragma once
 
 #include <array>
@@ -27,8 +28,8 @@ struct Contender {
 /// What a parameter's departure from the default is worth in the winner.
 struct Worth {
     std::string name;
-    double gain = 0.0;   ///< log of the winner's (relmse x cost) without this departure over that with it
-    bool kept = false;   ///< false: it gained too little and was taken back
+    double gain = 0.0;  ///< log of the winner's (relmse x cost) without this departure over that with it
+    bool kept = false;  ///< false: it gained too little and was taken back
 };
 
 struct SearchOutcome {
@@ -43,8 +44,8 @@ struct SearchOutcome {
 class Search {
 public:
     /// `limit`: seconds of TrialRunner::spent() after which no round begins; not used with request.iterations.
-    Search(const TuneRequest& request, const SearchSpace& space, const std::vector<Candidate>& peers, TrialRunner& runner,
-           double limit);
+    Search(const TuneRequest& request, const SearchSpace& space, const std::vector<Candidate>& peers,
+           TrialRunner& runner, double limit);
 
     /// Empty when interrupted.
     [[nodiscard]] std::optional<SearchOutcome> run();
@@ -59,6 +60,7 @@ private:
     [[nodiscard]] std::vector<Candidate> nextField(int size);
     [[nodiscard]] Candidate sobolPoint();
     [[nodiscard]] Candidate neighbour(const Candidate& of, double reach);
+    [[nodiscard]] Candidate modelsBest(const AdditiveModel& model) const;
     [[nodiscard]] std::vector<const Contender*> ranked() const;
     [[nodiscard]] AdditiveModel fitted() const;
     [[nodiscard]] bool prune(SearchOutcome& outcome);

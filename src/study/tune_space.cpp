@@ -15,7 +15,7 @@ namespace pellucid {
 namespace {
 
 constexpr const char* kAutomatic = "auto";
-constexpr double kAutomaticShare = 0.5;  // of the coordinate
+constexpr double kAutomaticShare = 0.5;  // of a coordinate
 
 [[nodiscard]] bool isWhole(const Parameter& row) { return std::holds_alternative<int Settings::*>(row.member); }
 [[nodiscard]] bool isWord(const Parameter& row) { return std::holds_alternative<std::string Settings::*>(row.member); }
@@ -43,9 +43,8 @@ constexpr double kAutomaticShare = 0.5;  // of the coordinate
     Dimension d;
     d.row = &row;
     d.standard = valueOf(plan.resolved, row.name);
-    d.automatic = row.automatic && d.standard == "-1";
-    if (d.automatic) d.standard = kAutomatic;
-    const double factor = row.tuning.timesPlan && !d.automatic ? std::max(1.0, number(d.standard)) : 1.0;
+    if (row.automatic && d.standard == "-1") d.standard = kAutomatic;
+    const double factor = row.tuning.timesPlan && d.hasStandard() ? std::max(1.0, number(d.standard)) : 1.0;
     d.low = std::max(row.lower, row.tuning.low * factor);
     d.high = std::min(row.upper, row.tuning.high * factor);
     return d;
@@ -81,7 +80,8 @@ constexpr double kAutomaticShare = 0.5;  // of the coordinate
 void readRange(TuneOver& over, const Parameter& row, const std::string& range, const std::string& text) {
     const std::vector<std::string> ends = split(range, "..");
     const std::string mend = "write " + over.name + "=LOW..HIGH, such as " + over.name + "=" +
-                             rounded(row.tuning.high > 0.0 && !row.tuning.timesPlan ? row.tuning.low : 1.0, false) + ".." +
+                             rounded(row.tuning.high > 0.0 && !row.tuning.timesPlan ? row.tuning.low : 1.0, false) +
+                             ".." +
                              rounded(row.tuning.high > 0.0 && !row.tuning.timesPlan ? row.tuning.high : 100.0, false);
     if (ends.size() != 2 || !parseNumber(ends[0], over.low) || !parseNumber(ends[1], over.high)) refuse(text, mend);
     if (over.low >= over.high) refuse(text, "the low end must lie below the high end");
@@ -132,7 +132,8 @@ TuneGoal parseGoal(const std::string& text) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
     const bool known = name == "time" || name == "error";
-    if (!known || equals == std::string::npos || !parseNumber(text.substr(equals + 1), goal.value) || !(goal.value > 0.0))
+    if (!known || equals == std::string::npos || !parseNumber(text.substr(equals + 1), goal.value) ||
+        !(goal.value > 0.0))
         throw Error(ErrorKind::Usage, "'" + text + "' is no goal", "--for", "write error=0.02 or time=30");
     goal.kind = name == "time" ? TuneGoal::Kind::Time : TuneGoal::Kind::Error;
     return goal;
@@ -153,40 +154,43 @@ Settings withSettings(Settings settings, const SettingList& list) {
     return settings;
 }
 
-std::string Dimension::valueAt(double coordinate) const {
-    double x = std::clamp(coordinate, 0.0, 1.0);
-    if (automatic && x < kAutomaticShare) return kAutomatic;
-    if (automatic) x = (x - kAutomaticShare) / (1.0 - kAutomaticShare);
+std::string Dimension::valueAt(double position) const {
+    const double x = std::clamp(position, 0.0, 1.0);
     if (!words.empty())
         return words[std::min(words.size() - 1, static_cast<std::size_t>(x * static_cast<double>(words.size())))];
     double value = row->logScale ? low * std::pow(high / low, x) : std::lerp(low, high, x);
-    if (const double step = row->tuning.step; step > 0.0) value = std::clamp(std::round(value / step) * step, low, high);
+    if (const double step = row->tuning.step; step > 0.0)
+        value = std::clamp(std::round(value / step) * step, low, high);
     return rounded(value, isWhole(*row));
 }
 
-double Dimension::coordinateOf(const std::string& value) const {
+double Dimension::positionOf(const std::string& value) const {
     if (!words.empty()) {
         const auto found = std::ranges::find(words, value);
         const auto index = static_cast<double>(found == words.end() ? 0 : found - words.begin());
         return (index + 0.5) / static_cast<double>(words.size());
     }
-    if (automatic && value == kAutomatic) return 0.5 * kAutomaticShare;
+    if (value == kAutomatic) return 0.5;
     const double v = std::clamp(number(value), low, high);
-    const double x = row->logScale ? std::log(v / low) / std::log(high / low) : (v - low) / (high - low);
-    return automatic ? kAutomaticShare + (1.0 - kAutomaticShare) * x : x;
+    return row->logScale ? std::log(v / low) / std::log(high / low) : (v - low) / (high - low);
 }
 
 bool usesPass(const RenderRecord& plan, ParameterPass pass) {
     switch (pass) {
-        case ParameterPass::CausticMap: return plan.resolved.causticMap == "on";
-        case ParameterPass::Cache: return plan.resolved.cache == "on";
-        case ParameterPass::GlobalMap: return plan.resolved.cache == "on" && plan.resolved.globalPhotons > 0;
-        case ParameterPass::Any: break;
+        case ParameterPass::CausticMap:
+            return plan.resolved.causticMap == "on";
+        case ParameterPass::Cache:
+            return plan.resolved.cache == "on";
+        case ParameterPass::GlobalMap:
+            return plan.resolved.cache == "on" && plan.resolved.globalPhotons > 0;
+        case ParameterPass::Any:
+            break;
     }
     return true;
 }
 
-SearchSpace::SearchSpace(const std::vector<TuneOver>& over, const Settings& asked, const RenderRecord& plan, bool glossy)
+SearchSpace::SearchSpace(const std::vector<TuneOver>& over, const Settings& asked, const RenderRecord& plan,
+                         bool glossy)
     : byPlan_(over.empty()) {
     for (const Parameter& row : parameters()) {
         const auto named = std::ranges::find(over, row.name, &TuneOver::name);
@@ -199,7 +203,6 @@ SearchSpace::SearchSpace(const std::vector<TuneOver>& over, const Settings& aske
             continue;
         }
         Dimension d = declared(row, plan);
-        if (!named->words.empty()) d.automatic = false;
         if (named->high > 0.0 || !named->words.empty()) {
             d.low = named->low;
             d.high = named->high;
@@ -216,17 +219,20 @@ Candidate SearchSpace::at(const std::vector<double>& coordinates, std::string or
     Candidate c;
     c.origin = std::move(origin);
     for (std::size_t i = 0; i < dimensions_.size(); ++i) {
-        std::string value = dimensions_[i].valueAt(coordinates[i]);
-        if (value != kAutomatic) c.set.emplace_back(dimensions_[i].row->name, std::move(value));
+        const Dimension& d = dimensions_[i];
+        const bool free = d.row->automatic && d.words.empty();
+        if (free && coordinates[i] < kAutomaticShare) continue;
+        const double position = free ? (coordinates[i] - kAutomaticShare) / (1.0 - kAutomaticShare) : coordinates[i];
+        c.set.emplace_back(d.row->name, d.valueAt(position));
     }
     return c;
 }
 
-std::vector<double> SearchSpace::coordinates(const Candidate& candidate) const {
+std::vector<double> SearchSpace::positions(const Candidate& candidate) const {
     std::vector<double> x;
     for (const Dimension& d : dimensions_) {
         const auto set = std::ranges::find(candidate.set, std::string(d.row->name), &SettingList::value_type::first);
-        x.push_back(d.coordinateOf(set == candidate.set.end() ? d.standard : set->second));
+        x.push_back(d.positionOf(set == candidate.set.end() ? d.standard : set->second));
     }
     return x;
 }

@@ -1,5 +1,5 @@
-/// What the tuner may change and how: each parameter is a coordinate from 0 to 1 along its own scale, and a candidate is
-/// the list of the settings in which it departs from those asked for.
+/// What the tuner may change and how: each parameter is a coordinate from 0 to 1 along its own scale, and a candidate
+/// is the list of the settings in which it departs from those asked for.
 #pragma once
 
 #include <string>
@@ -28,15 +28,13 @@ struct Dimension {
     const Parameter* row = nullptr;
     double low = 0.0, high = 0.0;
     std::vector<std::string> words;
-    std::string standard;  ///< what the plan chose
-    /// The plan chose no number (a radius pixel by pixel, say): the lower half of the coordinate is "auto", the upper half
-    /// the range.
-    bool automatic = false;
+    std::string standard;  ///< what the plan chose; "auto" where it chose no number (a radius pixel by pixel, say)
 
-    /// As --set takes it, with three significant digits.
-    [[nodiscard]] std::string valueAt(double coordinate) const;
-    /// Clamped to the range.
-    [[nodiscard]] double coordinateOf(const std::string& value) const;
+    [[nodiscard]] bool hasStandard() const noexcept { return standard != "auto"; }
+    /// As --set takes it, with three significant digits; `position` 0 .. 1 along the range.
+    [[nodiscard]] std::string valueAt(double position) const;
+    /// Clamped to the range; the middle for "auto".
+    [[nodiscard]] double positionOf(const std::string& value) const;
 };
 
 class SearchSpace {
@@ -48,10 +46,12 @@ public:
     [[nodiscard]] const std::vector<Dimension>& dimensions() const noexcept { return dimensions_; }
     [[nodiscard]] std::size_t size() const noexcept { return dimensions_.size(); }
 
-    /// Departs in every coordinate, those apart that are automatic there.
+    /// A candidate for each point of the unit cube: a parameter that the plan can choose is left to it in the lower half of
+    /// its coordinate (what it does there may be more than a number: growing counts, say), and runs through its range in
+    /// the upper half.
     [[nodiscard]] Candidate at(const std::vector<double>& coordinates, std::string origin) const;
-    /// Of a candidate; the plan's choice where it does not depart.
-    [[nodiscard]] std::vector<double> coordinates(const Candidate& candidate) const;
+    /// Where a candidate's values lie in their ranges; the plan's value where it does not depart.
+    [[nodiscard]] std::vector<double> positions(const Candidate& candidate) const;
     /// Whether the candidate departs in searched parameters only.
     [[nodiscard]] bool contains(const Candidate& candidate) const;
     /// Whether it may be the result: with --over only what that names may be changed.

@@ -57,13 +57,14 @@ TrialJournal::TrialJournal(std::filesystem::path file, std::string key) : file_(
     } catch (const nlohmann::json::exception&) {
         trials_.clear();  // damaged: told below, and left for the user to look at
     }
-    throw Error(ErrorKind::Usage, "this folder holds the tuning of another scene, size, time or kind of budget", file_.string(),
-                "give -o another folder, or remove this one");
+    throw Error(ErrorKind::Usage, "this folder holds the tuning of another scene, size, time or kind of budget",
+                file_.string(), "give -o another folder, or remove this one");
 }
 
 const Trial* TrialJournal::find(const std::string& settings, const TrialPlan& plan) const {
     const auto found = std::ranges::find_if(trials_, [&](const Trial& t) {
-        return t.settings == settings && t.plan.time == plan.time && t.plan.windows == plan.windows && t.plan.seed == plan.seed;
+        return t.settings == settings && t.plan.time == plan.time && t.plan.windows == plan.windows &&
+               t.plan.seed == plan.seed;
     });
     return found == trials_.end() ? nullptr : &*found;
 }
@@ -83,12 +84,18 @@ double nominalSeconds(const RenderRecord& record) noexcept {
 
 TrialRunner::TrialRunner(const TuneRequest& request, const SceneSource& scenes, const TuneReference& reference,
                          TrialJournal& journal, const Workers& workers, const Progress& progress, const LogSink& log)
-    : request_(request), scenes_(scenes), reference_(reference), journal_(journal), workers_(workers), progress_(progress),
-      log_(log), spent_(reference.spent) {}
+    : request_(request),
+      scenes_(scenes),
+      reference_(reference),
+      journal_(journal),
+      workers_(workers),
+      progress_(progress),
+      log_(log),
+      spent_(reference.spent) {}
 
 Trial TrialRunner::counted(const Trial& trial) {
-    const std::string name = trial.settings + "|" + std::to_string(trial.plan.time) + "|" + std::to_string(trial.plan.windows) +
-                             "|" + std::to_string(trial.plan.seed);
+    const std::string name = trial.settings + "|" + std::to_string(trial.plan.time) + "|" +
+                             std::to_string(trial.plan.windows) + "|" + std::to_string(trial.plan.seed);
     if (counted_.insert(name).second) spent_ += trial.spent;
     return trial;
 }
@@ -115,7 +122,8 @@ RenderRequest TrialRunner::renderRequest(const Candidate& candidate, const Trial
     else
         render.budget.seconds = plan.time;
     if (plan.windows != kWholeImage)
-        render.windows = stratifiedWindows(render.width, render.height, kWindowKey + static_cast<std::uint64_t>(plan.windows));
+        render.windows =
+            stratifiedWindows(render.width, render.height, kWindowKey + static_cast<std::uint64_t>(plan.windows));
     return render;
 }
 
@@ -141,7 +149,8 @@ std::optional<Trial> TrialRunner::run(const Candidate& candidate, const TrialPla
     }
     Trial trial{settings, plan, reference_.relmse(result.image, render.windows), result.record.seconds, 0.0};
     if (request_.iterations > 0) trial.cost = nominalSeconds(result.record);
-    if (missing) writeExr(image, result.image, {{"pellucid.version", request_.version}, {"pellucid.settings", settings}});
+    if (missing)
+        writeExr(image, result.image, {{"pellucid.version", request_.version}, {"pellucid.settings", settings}});
     trial.spent = std::chrono::duration<double>(Clock::now() - start).count();
     if (const Trial* known = journal_.find(settings, plan)) return counted(*known);  // only its picture was missing
     journal_.add(trial);

@@ -1,5 +1,5 @@
-/// Trials: one render of one candidate, measured. Each is kept in DIR/trials.json as soon as it is done; a trial that is
-/// found there is not rendered again.
+/// Trials: one render of one candidate, measured. Each is kept in DIR/trials.json as soon as it is done; a trial that
+/// is found there is not rendered again.
 #pragma once
 
 #include <cstdint>
@@ -19,17 +19,17 @@ inline constexpr int kWholeImage = -1;
 
 /// What is rendered of a candidate.
 struct TrialPlan {
-    double time = 0.0;            ///< budget, in seconds or nominal ones
-    int windows = kWholeImage;    ///< which set of windows
+    double time = 0.0;          ///< budget, in seconds or nominal ones
+    int windows = kWholeImage;  ///< which set of windows
     std::uint64_t seed = 0;
 };
 
 struct Trial {
-    std::string settings;         ///< textOf(Candidate::set)
+    std::string settings;  ///< textOf(Candidate::set)
     TrialPlan plan;
     double relmse = 0.0;
-    double cost = 0.0;            ///< what the whole image took or would take, in seconds or nominal ones
-    double spent = 0.0;           ///< seconds of wall time that the trial took
+    double cost = 0.0;   ///< what the whole image took or would take, in seconds or nominal ones
+    double spent = 0.0;  ///< seconds of wall time that the trial took
 };
 
 /// Reads and writes DIR/trials.json.
@@ -53,7 +53,8 @@ public:
                 TrialJournal& journal, const Workers& workers, const Progress& progress, const LogSink& log);
 
     /// Empty when interrupted. With `picture` the image is kept as DIR/pictures/NAME.exr.
-    [[nodiscard]] std::optional<Trial> run(const Candidate& candidate, const TrialPlan& plan, const std::string& picture = "");
+    [[nodiscard]] std::optional<Trial> run(const Candidate& candidate, const TrialPlan& plan,
+                                           const std::string& picture = "");
 
     [[nodiscard]] bool interrupted() const noexcept { return interrupted_; }
     /// Seconds that the reference and the trials asked for so far have taken, whether now or in an earlier session: a

@@ -9,8 +9,8 @@ namespace pellucid {
 namespace {
 
 constexpr double kShare = 1.0 / 7.0;
-constexpr int kCells = 9;           // about; the grid has the image's shape
-constexpr int kSmallestSide = 24;   // of a window, in pixels
+constexpr int kCells = 9;          // about; the grid has the image's shape
+constexpr int kSmallestSide = 24;  // of a window, in pixels
 
 }  // namespace
 
@@ -25,7 +25,8 @@ std::vector<PixelWindow> stratifiedWindows(int width, int height, std::uint64_t 
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column) {
             const int left = column * width / columns, top = row * height / rows;
-            const int roomX = (column + 1) * width / columns - left - side, roomY = (row + 1) * height / rows - top - side;
+            const int roomX = (column + 1) * width / columns - left - side,
+                      roomY = (row + 1) * height / rows - top - side;
             const glm::vec2 place = sampler.next2D();
             PixelWindow w;
             w.x0 = left + static_cast<int>(place.x * static_cast<float>(std::max(0, roomX) + 1));

@@ -1,7 +1,7 @@
-// What tuning promises, over the project's own scenes: on seeds and views that the tuning has not seen, the tuned settings
-// reach the default's error in at most 0.7 of its time (median), never in more than 1.05, and the default lies within
-// 1.5 times of the front. Costs are counted in rays, so the figures are the same on every machine. Hours on two cores;
-// PELLUCID_TUNE_SECONDS (nominal, of one render) and PELLUCID_TUNE_WIDTH make it smaller.
+// What tuning promises, over the project's own scenes: on seeds and views that the tuning has not seen, the tuned
+// settings reach the default's error in at most 0.7 of its time (median), never in more than 1.05, and the default lies
+// within 1.5 times of the front. Costs are counted in rays, so the figures are the same on every machine. Hours on two
+// cores; PELLUCID_TUNE_SECONDS (nominal, of one render) and PELLUCID_TUNE_WIDTH make it smaller.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
 #include <pellucid/io/gltf.h>
@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScenes[] = {"glass-and-mirror", "goblet",     "prism-spot", "lens-point",  "ring",
+constexpr const char* kScenes[] = {"glass-and-mirror", "goblet",       "prism-spot", "lens-point", "ring",
                                    "rough-metal",      "diffuse-room", "two-rooms",  "many-lamps", "textured"};
 constexpr double kMedian = 0.7, kWorst = 1.05, kNear = 1.5;
 constexpr std::uint64_t kFreshSeed = 1000;
@@ -55,7 +55,8 @@ constexpr int kFreshSeeds = 4;
 /// A scene is built for its settings.
 class Shelf {
 public:
-    Shelf(std::string name, bool moved, const Workers& workers) : name_(std::move(name)), moved_(moved), workers_(workers) {}
+    Shelf(std::string name, bool moved, const Workers& workers)
+        : name_(std::move(name)), moved_(moved), workers_(workers) {}
     [[nodiscard]] LoadedScene scene(const Settings& settings) {
         std::unique_ptr<Scene>& scene = scenes_[settings.castRoughness];
         SceneOptions options;
@@ -121,21 +122,25 @@ TEST(TuneHolds, OnSeedsAndViewsThatItHasNotSeen) {
         std::ifstream file(folder / "front.json");
         const auto front = nlohmann::json::parse(file);
         Settings tuned;
-        for (const auto& [key, value] : front.at("chosen").at("settings").items()) setParameter(tuned, key, value.get<std::string>());
+        for (const auto& [key, value] : front.at("chosen").at("settings").items())
+            setParameter(tuned, key, value.get<std::string>());
 
         request.folder = folder / "fresh";
         fs::create_directories(request.folder);
         const TuneReference reference = referenceFor(request, freshScenes, 30.0 * time, workers, {}, {});
         const Measured standard = measure(freshScenes, reference, Settings{}, {time}, workers);
-        const Measured own = measure(freshScenes, reference, tuned, {time / 8.0, time / 4.0, time / 2.0, time, 1.5 * time}, workers);
+        const Measured own =
+            measure(freshScenes, reference, tuned, {time / 8.0, time / 4.0, time / 2.0, time, 1.5 * time}, workers);
         const double share = timeToError(own.seconds, own.relmse, std::sqrt(standard.relmse[0])) / standard.seconds[0];
         shares.push_back(share);
         double best = 1.0;
         for (const auto& finalist : front.at("finalists"))
             if (finalist.at("may_win").get<bool>())
-                best = std::min(best, finalist.at("points").back().at("relmse_cost_over_default").at("value").get<double>());
+                best = std::min(best,
+                                finalist.at("points").back().at("relmse_cost_over_default").at("value").get<double>());
         farthest = std::max(farthest, 1.0 / best);
-        std::printf("%-18s %10.3f %10.3f  %s\n", name, share, 1.0 / best, front.at("chosen").at("settings").dump().c_str());
+        std::printf("%-18s %10.3f %10.3f  %s\n", name, share, 1.0 / best,
+                    front.at("chosen").at("settings").dump().c_str());
         std::fflush(stdout);
     }
     std::ranges::sort(shares);

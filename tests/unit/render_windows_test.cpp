@@ -60,7 +60,8 @@ TEST_F(RenderWindows, RecordsOfTheCacheAreMadeInThemOnly) {
     double inside = 0.0, outside = 0.0;
     for (int y = 0; y < 36; ++y)
         for (int x = 0; x < 48; ++x)
-            (x < 24 ? inside : outside) += static_cast<double>(part.image.at(static_cast<std::size_t>(y * 48 + x), records));
+            (x < 24 ? inside : outside) +=
+                static_cast<double>(part.image.at(static_cast<std::size_t>(y * 48 + x), records));
     EXPECT_GT(inside, 0.0);
     EXPECT_EQ(outside, 0.0);
     const auto wholeRays = static_cast<double>(raysOf(whole.record));

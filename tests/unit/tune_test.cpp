@@ -86,12 +86,13 @@ TEST(TuneSpace, SearchesOnlyWhatThePlanUses) {
 }
 
 TEST(TuneSpace, ValuesAndCoordinatesAreInverse) {
-    const SearchSpace space(parseOver("cache.error=0.05..0.8,cache.rays,photon.alpha,photon.guiding=on|off"), Settings{}, planOf(true), false);
+    const SearchSpace space(parseOver("cache.error=0.05..0.8,cache.rays,photon.alpha,photon.guiding=on|off"),
+                            Settings{}, planOf(true), false);
     ASSERT_EQ(space.size(), 4U);
     for (const Dimension& d : space.dimensions())
         for (const double x : {0.0, 0.3, 0.77, 1.0}) {
             const std::string value = d.valueAt(x);
-            EXPECT_EQ(d.valueAt(d.coordinateOf(value)), value) << d.row->name;
+            EXPECT_EQ(d.valueAt(d.positionOf(value)), value) << d.row->name;
             Settings settings;
             EXPECT_NO_THROW(setParameter(settings, d.row->name, value)) << d.row->name << "=" << value;
         }
@@ -103,14 +104,15 @@ TEST(TuneSpace, ValuesAndCoordinatesAreInverse) {
     EXPECT_FALSE(space.contains({"", {{"photon.radius", "3"}}}));
 }
 
-TEST(TuneSpace, WhatThePlanDecidesPixelByPixelHasItsPlace) {
+TEST(TuneSpace, HalfOfWhatThePlanCanChooseIsLeftToIt) {
     RenderRecord plan = planOf(true);
-    plan.resolved.causticRadius = -1.0;
-    const SearchSpace space(parseOver("photon.radius=1..4"), Settings{}, plan, false);
-    EXPECT_TRUE(space.at({0.2}, "").set.empty());
-    EXPECT_EQ(space.at({0.75}, "").set, (SettingList{{"photon.radius", "2"}}));
-    EXPECT_EQ(space.at(space.coordinates({"", {}}), "").set, SettingList{});
-    EXPECT_EQ(space.at(space.coordinates({"", {{"photon.radius", "2"}}}), "").set, (SettingList{{"photon.radius", "2"}}));
+    plan.resolved.causticRadius = -1.0;  // pixel by pixel: no number
+    const SearchSpace space(parseOver("photon.radius=1..4,photon.alpha=0.5..1"), Settings{}, plan, false);
+    EXPECT_FALSE(space.dimensions()[0].hasStandard());
+    EXPECT_EQ(space.at({0.2, 0.0}, "").set, (SettingList{{"photon.alpha", "0.5"}}));
+    EXPECT_EQ(space.at({0.75, 1.0}, "").set, (SettingList{{"photon.radius", "2"}, {"photon.alpha", "1"}}));
+    EXPECT_EQ(space.positions({"", {{"photon.radius", "2"}}})[0], 0.5);
+    EXPECT_EQ(space.positions({"", {}})[0], 0.5);
 }
 
 TEST(TuneSpace, PeersSettingsAreValidAndDropWhatIsLeftOut) {

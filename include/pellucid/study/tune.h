@@ -41,16 +41,16 @@ struct TuneGoal {
 inline constexpr double kRaysOfNominalSecond = 2e6;
 
 struct TuneRequest {
-    double time = 0.0;        ///< seconds that the renders to tune for are to take
-    double budget = 0.0;      ///< seconds for the tuning as a whole; not used with `iterations`
-    int iterations = 0;       ///< rounds of the search; above 0 costs are counted in rays, not in seconds
-    std::vector<TuneOver> over;  ///< empty: what the plan's passes use
+    double time = 0.0;             ///< seconds that the renders to tune for are to take
+    double budget = 0.0;           ///< seconds for the tuning as a whole; not used with `iterations`
+    int iterations = 0;            ///< rounds of the search; above 0 costs are counted in rays, not in seconds
+    std::vector<TuneOver> over;    ///< empty: what the plan's passes use
     std::optional<TuneGoal> goal;  ///< empty: the least error at `time`
     int width = 0, height = 0;
     std::string camera;
     std::uint64_t seed = 0;
     std::filesystem::path folder, reference;  ///< no reference: one is made
-    Settings settings;        ///< what is fixed; the search starts from here
+    Settings settings;                        ///< what is fixed; the search starts from here
     std::string version, sceneFile, command;  ///< for the files
 };
 
