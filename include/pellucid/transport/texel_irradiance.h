@@ -33,7 +33,7 @@ public:
 
     [[nodiscard]] std::size_t texels() const noexcept { return texels_.size() * 4; }
     [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
-    /// Share by which extrapolation changed the class's energy, pixel by pixel, root mean square: bounds the bias left.
+    /// Share by which extrapolation changed the class's energy, root mean square over blocks of 16 x 16 pixels.
     [[nodiscard]] double extrapolated() const noexcept;
 
 private:
