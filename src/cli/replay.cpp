@@ -43,6 +43,8 @@ namespace {
 [[nodiscard]] std::string replayText(const SampleReplay& replay, const Scene& scene) {
     std::string text;
     for (std::size_t i = 0; i < replay.vertices.size(); ++i) text += vertexText(replay.vertices[i], scene, i + 1);
+    if (!replay.lightVertices.empty()) text += "the light path beside it, its throughput in watts of the normalised scene:\n";
+    for (std::size_t i = 0; i < replay.lightVertices.size(); ++i) text += vertexText(replay.lightVertices[i], scene, i + 1);
     constexpr std::array kNames{"emission", "direct", "caustic", "indirect"};
     for (std::size_t c = 0; c < kNames.size(); ++c)
         text += fmt::format("{:<9} {}\n", kNames[c], rgb(replay.radiance.layer[c]));

@@ -91,6 +91,24 @@ void addEnergy(StageRecord& stage, const EnergyBalance& pass) {
     return name == "halton" ? SamplerKind::Halton : SamplerKind::Sobol;
 }
 
+[[nodiscard]] std::vector<TracedVertex> tracedVertices(const Subpath& path) {
+    std::vector<TracedVertex> list;
+    for (const PathVertex& v : path.vertices()) {
+        TracedVertex t;
+        t.position = v.hit.point.position;
+        t.normal = v.bsdf.shadingNormal();
+        t.distance = v.hit.distance;
+        t.geometry = v.hit.point.geometry;
+        t.primitive = v.hit.point.primitive;
+        t.material = v.hit.point.material;
+        t.kinds = v.bsdf.kinds();
+        t.backSide = v.bsdf.backSide();
+        t.throughput = v.throughput;
+        list.push_back(t);
+    }
+    return list;
+}
+
 /// The loop of iterations: each one leaves a usable image.
 class Renderer {
 public:
@@ -119,12 +137,20 @@ public:
                 tell("iterations before the sample");
             }
         makeMaps();
-        Walk walk(context_);
         SampleReplay replay;
         replay.width = camera_.width();
         replay.height = camera_.height();
-        walk.writeTo(&replay.vertices);
         FirstHit first;
+        if (bidirectional()) {
+            Bidirectional paths(scene_, camera_, context_.options, static_cast<std::uint32_t>(film_.pixels()));
+            std::vector<LightSplat> splats;
+            replay.radiance = sampleBidirectional(paths, pixelIndex(x, y), glm::vec2(static_cast<float>(x), static_cast<float>(y)), splats, first, nullptr);
+            replay.vertices = tracedVertices(paths.eyePath());
+            replay.lightVertices = tracedVertices(paths.lightPath());
+            return replay;
+        }
+        Walk walk(context_);
+        walk.writeTo(&replay.vertices);
         replay.radiance = samplePixel(walk, x, y, first);
         return replay;
     }
@@ -160,6 +186,9 @@ private:
     void makeMaps();
     [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, FirstHit& first, StringSums* strings = nullptr) const;
     void bidirectionalPass();
+    [[nodiscard]] bool bidirectional() const noexcept { return request_.method == Method::Bdpt || plan_.bidirectional; }
+    [[nodiscard]] LayeredRadiance sampleBidirectional(Bidirectional& paths, std::size_t pixel, const glm::vec2& corner,
+                                                      std::vector<LightSplat>& splats, FirstHit& first, StringSums* strings) const;
     template <class Body>
     void forTiles(const Body& body) const;
     [[nodiscard]] std::size_t tiles() const;
@@ -279,7 +308,7 @@ void Renderer::makeMaps() {
 void Renderer::iterate() {
     makeMaps();
     if (plan_.lightPass) lightPass();
-    if (request_.method == Method::Bdpt || plan_.bidirectional) bidirectionalPass();
+    if (bidirectional()) bidirectionalPass();
     else if (request_.method != Method::Light) eyePass();
     else film_.countSamples(1);
 }
@@ -437,23 +466,29 @@ void Renderer::eyePass() {
     raysSince_ += static_cast<double>(total);
 }
 
+/// As samplePixel, with a light path of its own number beside the eye path.
+LayeredRadiance Renderer::sampleBidirectional(Bidirectional& paths, std::size_t pixel, const glm::vec2& corner,
+                                              std::vector<LightSplat>& splats, FirstHit& first, StringSums* strings) const {
+    const SamplerKind numbers = samplerKind(request_.settings.sampler);
+    Sampler eye(request_.seed, pixel, film_.samples(), numbers);
+    Sampler light(request_.seed, kBidirectionalPass + film_.samples(), static_cast<std::uint32_t>(pixel), numbers);
+    const glm::vec2 jitter = eye.next2D(), lens = eye.next2D();
+    return paths.sample(camera_.ray(corner + jitter, lens).ray, eye, light, splats, &first, strings);
+}
+
 /// An eye path and a light path for every pixel. Splats wait in their tile and are added in the order of the tiles.
 void Renderer::bidirectionalPass() {
     const StageTimer timer(eyeStage_);
-    const SamplerKind numbers = samplerKind(request_.settings.sampler);
     std::vector<std::uint64_t> rays(tiles(), 0);
     std::vector<std::vector<LightSplat>> splats(tiles());
     forTiles([&](std::size_t tile, const auto& forPixels) {
         Bidirectional paths(scene_, camera_, context_.options, static_cast<std::uint32_t>(film_.pixels()));
         StringSums strings;
         forPixels([&](std::size_t pixel, const glm::vec2& corner) {
-            Sampler eye(request_.seed, pixel, film_.samples(), numbers);
-            Sampler light(request_.seed, kBidirectionalPass + film_.samples(), static_cast<std::uint32_t>(pixel), numbers);
-            const glm::vec2 jitter = eye.next2D(), lens = eye.next2D();
             FirstHit first;
             strings.clear();
             const LayeredRadiance radiance =
-                paths.sample(camera_.ray(corner + jitter, lens).ray, eye, light, splats[tile], &first, film_.keepsStrings() ? &strings : nullptr);
+                sampleBidirectional(paths, pixel, corner, splats[tile], first, film_.keepsStrings() ? &strings : nullptr);
             film_.add(pixel, film_.samples(), radiance, first);
         });
         rays[tile] = paths.rays();

@@ -127,8 +127,8 @@ std::string sweepsMarkdown(const std::vector<Sweep>& sweeps, std::string_view pi
     std::string page =
         "\n## Stiffness\n\nEach dial is turned over decades in a scene whose picture is known. Error is the root of the mean over pixels "
         "and 4 seeds of the\nsquared relative error at a fixed number of samples; bias is that of the mean, with its 95 % interval; seconds "
-        "are those of one render\non the machine that made this page. A method is said to break down at the first step where its error is "
-        "above 10 % and three times its\nsmallest of the sweep.\n";
+        "are those of one render\non the machine that made this page. A method is said to break down at the first step where its error is three\ntimes "
+        "that of the first step, or above 30 % where that one was below 10 %.\n";
     if (!picture.empty()) page += fmt::format("\n![Error and seconds over each dial, path and photon]({})\n", picture);
     for (const Sweep& sweep : sweeps) {
         page += fmt::format("\n### {}\n\n{} Expected: {}. Source: {}.\n\n", sweep.name, sweep.scene, sweep.reference, sweep.source);

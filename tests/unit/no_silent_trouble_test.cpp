@@ -81,6 +81,9 @@ TEST(NoSilentTrouble, ReplayedSamplesAreThoseOfTheRender) {
             EXPECT_NEAR(mean, static_cast<double>(image.at(pixel, image.channel("G"))), 1e-5 * (mean + 1e-6)) << x << "," << y;
         }
     }
+    const SampleReplay both = replaySample(scene, smallRequest(Method::Bdpt, 1), 5, 5, 0, workers);
+    EXPECT_FALSE(both.vertices.empty());
+    EXPECT_TRUE(isFinite(both.radiance.total()));
     EXPECT_THROW(static_cast<void>(replaySample(scene, smallRequest(Method::Path, 1), 12, 0, 0, workers)), Error);
     EXPECT_THROW(static_cast<void>(replaySample(scene, smallRequest(Method::Light, 1), 0, 0, 0, workers)), Error);
 }

@@ -102,7 +102,8 @@ struct RenderResult {
 /// One sample of a render again, vertex by vertex.
 struct SampleReplay {
     std::vector<TracedVertex> vertices;
-    LayeredRadiance radiance;
+    std::vector<TracedVertex> lightVertices;  ///< of the light path that a bidirectional sample is joined with
+    LayeredRadiance radiance;                 ///< of this pixel; what a light path adds to others is not in it
     int width = 0, height = 0;              ///< of the image that the sample belongs to
 };
 

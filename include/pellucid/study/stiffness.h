@@ -39,11 +39,11 @@ struct Sweep {
     std::vector<SweepStep> steps;
 };
 
-/// A method breaks down at a step where its error is above this and it is not merely short of samples everywhere: at least
-/// this many times its smallest error of the sweep.
-inline constexpr double kBrokenError = 0.1, kBrokenFactor = 3.0;
+/// A method breaks down at a step where its error is this many times that of the tame end, the first step, or of
+/// kSmallError where that one is smaller: noise that was there from the start is no breakdown.
+inline constexpr double kBrokenFactor = 3.0, kSmallError = 0.1;
 
-/// The first step, counted from the sweep's tame end (its first), from which on the method is broken down; empty: none.
+/// The first step where the method has broken down; empty: none.
 [[nodiscard]] std::optional<std::size_t> breakdown(const Sweep& sweep, std::size_t method) noexcept;
 
 /// All sweeps whose name holds `filter`. `done` is called after each step, with those so far.

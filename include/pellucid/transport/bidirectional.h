@@ -23,6 +23,9 @@ public:
                                          FirstHit* first = nullptr, StringSums* strings = nullptr) noexcept;
 
     [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
+    /// The two paths of the last sample.
+    [[nodiscard]] const Subpath& eyePath() const noexcept { return eye_; }
+    [[nodiscard]] const Subpath& lightPath() const noexcept { return light_; }
 
 private:
     void traceLight(Sampler& sampler, std::vector<LightSplat>& splats) noexcept;
