@@ -117,8 +117,11 @@ public:
           camera_(scene.camera(request.camera, request.width, request.height, request.settings.aperture, request.settings.focus)),
           context_{scene, transportOptions(request), {}}, film_(camera_.width(), camera_.height()) {}
 
+    /// The pilot, and one iteration for what each pass costs.
     [[nodiscard]] RenderRecord plan() {
         prepare();
+        iterate();
+        ++iteration_;
         return record();
     }
 

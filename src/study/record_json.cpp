@@ -117,7 +117,7 @@ std::string planText(const RenderRecord& plan, const RecordContext& context) {
         decisions.add({d.name, d.overridden ? d.choice + " (set)" : d.choice, d.reason});
     text += decisions.text();
     if (!plan.stages.empty()) {
-        TextTable stages({"pass", "seconds, predicted", "photons", "records"});
+        TextTable stages({"pass", "seconds, one iteration", "photons", "records"});
         for (const StageRecord& s : plan.stages)
             stages.add({s.name, figure(s.seconds), countText(s.photonsEmitted), countText(s.records)});
         text += "\n" + stages.text();

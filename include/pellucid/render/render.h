@@ -112,7 +112,7 @@ struct SampleReplay {
 [[nodiscard]] SampleReplay replaySample(const Scene& scene, const RenderRequest& request, int x, int y, std::uint32_t sample,
                                         const Workers& workers, const Progress& progress = {});
 
-/// What render() would do, with the predicted cost of each pass, without rendering.
+/// What render() would do, with the cost of each pass as one iteration shows it.
 [[nodiscard]] RenderRecord planOnly(const Scene& scene, const RenderRequest& request, const Workers& workers,
                                     const LogSink& log = {});
 
