@@ -20,7 +20,8 @@ constexpr double kEnoughUseful = 400;
 constexpr std::uint64_t kPilotRounds = 6;
 constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
 constexpr std::uint32_t kGlobalPaths = 75'000;
-constexpr double kPathsPerPixel = 0.5;  ///< caustic photon paths an iteration
+/// Caustic photon paths an iteration: so many that this many are useful, between two bounds.
+constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
 constexpr double kDefaultTimeCap = 120.0;
 
 [[nodiscard]] bool isOff(const std::string& choice) { return choice == "off"; }
@@ -43,6 +44,7 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
         // Each guided look replaces the one before: its sample is the better one. Enough when it hardly finds more.
         const auto before = static_cast<double>(useful.size()), now = static_cast<double>(pass.useful.size());
         useful = std::move(pass.useful);
+        plan.usefulShare = now / paths;
         if (now == 0.0 && attempt > 0) break;
         if (now == 0.0) paths = kPilotPaths * kPilotRetryFactor;
         else if (now >= kEnoughUseful && now < 1.3 * before) break;
@@ -61,7 +63,8 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     if (useful == 0 && !isOn(s.causticMap))
         return decide(plan, "caustic map", "off", fmt::format("0 of {} pilot photons arrived where the camera looks", plan.pilotPhotons));
     plan.causticMap = true;
-    const auto wanted = static_cast<double>(seen.points.size()) * kPathsPerPixel;
+    const double perPixel = std::clamp(kUsefulPerPixel / std::max(plan.usefulShare, 1e-6), kPathsPerPixel, kMostPathsPerPixel);
+    const auto wanted = static_cast<double>(seen.points.size()) * perPixel;
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
                                               : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
     if (s.causticRadius > 0.0) {

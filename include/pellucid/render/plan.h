@@ -47,6 +47,7 @@ struct Plan {
     std::vector<std::string> blindSpots;
     double timeCap = 0.0;                ///< seconds, for a render that has only an error to reach; 0: none
     std::uint64_t pilotRays = 0, pilotPhotons = 0;
+    double usefulShare = 0.0;            ///< of the photon paths, in the last look of the pilot
 
     /// A quick first generation, then ever better ones: more photons and rays, a smaller error, so that the bias of map and
     /// cache vanishes as time goes on. What was set by name stays, but for the error.
