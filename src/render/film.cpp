@@ -17,26 +17,37 @@ constexpr const char* kLayerNames[kPathClasses] = {"emission", "direct", "causti
 }  // namespace
 
 const std::vector<std::string>& auxiliaryLayers() noexcept {
-    static const std::vector<std::string> names{"albedo", "normal", "depth", "variance", "radius", "records", "classes"};
+    static const std::vector<std::string> names{"albedo", "normal", "depth", "variance", "radius", "records", "samples", "classes"};
     return names;
 }
 
 Film::Film(int width, int height)
     : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
-void Film::add(std::size_t pixel, std::uint32_t sample, const LayeredRadiance& radiance, const FirstHit& first) noexcept {
+bool Film::admit(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance) noexcept {
+    if (isFinite(radiance.total())) return true;
+    Pixel& p = pixels_[pixel];
+    if (p.nonfinite++ == 0) p.firstNonfinite = iteration;
+    return false;
+}
+
+void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance, const FirstHit& first, int samples,
+               std::uint64_t rays) noexcept {
     Pixel& p = pixels_[pixel];
     const Rgb total = radiance.total();
-    if (!isFinite(total)) {
-        if (p.nonfinite++ == 0) p.firstNonfinite = sample;
-        return;
-    }
     for (std::size_t l = 0; l < kPathClasses; ++l)
         for (glm::length_t c = 0; c < 3; ++c) p.layer[l][c] += static_cast<double>(radiance.layer[l][c]);
-    if ((sample & 1U) != 0)
+    if ((iteration & 1U) != 0)
         for (glm::length_t c = 0; c < 3; ++c) p.half[c] += static_cast<double>(total[c]);
     const double y = static_cast<double>(luminance(total));
     p.square += y * y;
+    const double shared = static_cast<double>(radiance.shared), own = y - shared;
+    p.sharedSum += shared;
+    p.sharedSquare += shared * shared;
+    p.eyeSum += samples * own;
+    p.eyeSquare += samples * own * own;
+    p.taken += static_cast<std::uint32_t>(samples);
+    p.rays += rays;
     for (glm::length_t c = 0; c < 3; ++c) {
         p.albedo[c] += first.albedo[c];
         p.normal[c] += first.normal[c];
@@ -48,6 +59,29 @@ void Film::add(std::size_t pixel, std::uint32_t sample, const LayeredRadiance& r
         double* sum = &strings_[(static_cast<std::size_t>(slotOf_[path.code()]) * pixels_.size() + pixel) * 3];
         for (glm::length_t c = 0; c < 3; ++c) sum[c] += static_cast<double>(value[c]);
     }
+}
+
+void Film::setShares(const std::vector<std::uint8_t>& shares) noexcept {
+    for (std::size_t i = 0; i < pixels_.size(); ++i) pixels_[i].share = shares[i];
+}
+
+std::uint64_t Film::taken() const noexcept {
+    std::uint64_t sum = 0;
+    for (const Pixel& p : pixels_) sum += p.taken;
+    return sum;
+}
+
+/// An iteration's mean of k samples has the variance of a sample over k: so k (mean - expectation)^2 has that of a sample.
+PixelNoise Film::noise(std::size_t pixel) const noexcept {
+    const Pixel& p = pixels_[pixel];
+    const double n = samples_, free = std::max(1.0, n - 1.0), taken = std::max<std::uint32_t>(1, p.taken);
+    PixelNoise noise;
+    noise.eyeVariance = static_cast<float>(std::max(0.0, p.eyeSquare - p.eyeSum * p.eyeSum / taken) / free);
+    noise.photonVariance = static_cast<float>(std::max(0.0, p.sharedSquare - p.sharedSum * p.sharedSum / std::max(1.0, n)) / free);
+    noise.luminance = static_cast<float>(p.eyeSum / taken + p.sharedSum / std::max(1.0, n));
+    noise.rays = static_cast<float>(static_cast<double>(p.rays) / taken);
+    noise.inside = p.taken > 0;
+    return noise;
 }
 
 void Film::keepStrings(LobeKinds kinds) {
@@ -142,12 +176,13 @@ Image Film::image(const std::vector<std::string>& layers) const {
     };
     for (const char* l : kLayerNames) addRgb(l);
     const bool albedo = wants(layers, "albedo"), normal = wants(layers, "normal"), depth = wants(layers, "depth"),
-               withVariance = wants(layers, "variance"), radius = wants(layers, "radius");
+               withVariance = wants(layers, "variance"), radius = wants(layers, "radius"), samples = wants(layers, "samples");
     if (albedo) addRgb("albedo");
     if (normal) names.insert(names.end(), {"normal.X", "normal.Y", "normal.Z"});
     if (depth) names.emplace_back("depth.Z");
     if (withVariance) names.emplace_back("variance.Y");
     if (radius) names.emplace_back("radius.Y");
+    if (samples) names.emplace_back("samples.Y");
     const auto strings = litStrings();
     for (const auto& [slot, name] : strings) addRgb(name);
     Image image(width_, height_, names);
@@ -167,6 +202,7 @@ Image Film::image(const std::vector<std::string>& layers) const {
         if (depth) image.at(i, channel++) = p.depth / n;
         if (withVariance) image.at(i, channel++) = static_cast<float>(variance(p));
         if (radius) image.at(i, channel++) = p.radius / n;
+        if (samples) image.at(i, channel++) = static_cast<float>(p.taken);
         for (const auto& [slot, name] : strings)
             for (std::size_t c = 0; c < 3; ++c) image.at(i, channel++) = static_cast<float>(stringMean(slot, i, c));
     }

@@ -129,6 +129,24 @@ void planReference(Plan& plan, const Scene& scene, const RenderRequest& request,
            request.settings.texelWidth == 0.0);
 }
 
+/// How the eye's samples are spread. The baselines stay plain unless told otherwise.
+void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) {
+    const Settings& s = request.settings;
+    const bool traces = request.method != Method::Light && request.method != Method::Bdpt && !plan.bidirectional;
+    if (!traces) return;
+    const bool plain = request.method == Method::Path;
+    bool glass = false, seenLamps = scene.environment() != nullptr;
+    for (const Material& m : scene.surfaces().materials()) glass = glass || m.transmission > 0.0F;
+    for (std::uint32_t l = 0; l < scene.lights().count(); ++l) seenLamps = seenLamps || scene.lights().kind(l) == LightKind::Triangle;
+    plan.splitLampChains = glass && seenLamps && (isOn(s.split) || (!plain && !isOff(s.split)));
+    if (glass && seenLamps && !(plain && !isOn(s.split)))
+        decide(plan, "lamps through glass", plan.splitLampChains ? "both ways" : "by chance", "the scene has glass, and lamps that can be seen", s.split != "auto");
+    plan.adaptive = isOn(s.adaptive) || (!plain && !isOff(s.adaptive) && !request.budget.samples);
+    if (!plain || plan.adaptive)
+        decide(plan, "samples of a pixel", plan.adaptive ? "by its noise" : "alike",
+               request.budget.samples ? "their number is asked for" : "learnt after iterations 4, 8, 16, ...", s.adaptive != "auto");
+}
+
 /// Which classes the method cannot see: no sampler of its makes such a path.
 void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request) {
     const std::size_t delta = pointLikeLights(scene.lights());
@@ -216,6 +234,7 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     } else {
         decide(plan, "photons, cache", "off", "path tracing needs none");
     }
+    planEyePaths(plan, scene, request);
     findBlindSpots(plan, scene, request);
     const Budget& b = request.budget;
     if (!b.seconds && !b.samples && !b.rays) {
@@ -230,6 +249,8 @@ Settings resolvedSettings(const Settings& asked, const Plan& plan) {
     s.causticMap = plan.causticMap ? "on" : "off";
     s.cache = plan.cache ? "on" : "off";
     s.guiding = plan.training.empty() ? "off" : "on";
+    s.split = plan.splitLampChains ? "on" : "off";
+    s.adaptive = plan.adaptive ? "on" : "off";
     s.causticPhotons = static_cast<int>(plan.causticPaths);
     s.globalPhotons = static_cast<int>(plan.globalPaths);
     if (!plan.adaptiveRadius) s.causticRadius = static_cast<double>(plan.causticFootprints);

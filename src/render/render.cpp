@@ -20,6 +20,7 @@
 #include "cache_builder.h"
 #include "checkpoint.h"
 #include "endless.h"
+#include "sample_shares.h"
 
 namespace pellucid {
 
@@ -44,6 +45,12 @@ constexpr std::size_t kTrainingLimit = 400'000;
 constexpr double kLeastLuminance = 0.1;
 constexpr float kMaxCausticRadius = 0.05F;  ///< of the scene's radius
 constexpr double kDefaultError = 0.05;
+/// Iterations before pixels are told apart by their noise.
+constexpr std::uint32_t kUniformIterations = 4;
+/// Time of a ray of the caustic photons, with what is made of them, in units of an eye ray's; as measured.
+constexpr double kPhotonRayTime = 1.75;
+/// Of a budget, for one iteration: else it would be overrun.
+constexpr double kMostOfBudget = 0.04;
 
 [[nodiscard]] double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -133,7 +140,7 @@ public:
             throw Error(ErrorKind::Usage, "light tracing has no samples of a pixel", "--debug-sample", "give another --method");
         prepare();
         // Without maps a sample depends on nothing that was before it.
-        if (!plan_.causticMap && !plan_.cache) film_.countSamples(sample);
+        if (!plan_.causticMap && !plan_.cache && !plan_.adaptive) film_.countSamples(sample);
         else
             for (; iteration_ < sample && !progress_.stopAsked(); ++iteration_) {
                 iterate();
@@ -152,9 +159,20 @@ public:
             replay.lightVertices = tracedVertices(paths.lightPath());
             return replay;
         }
+        // Of the pixel's samples in this iteration the first one that is not finite, else the first.
+        renewShares();
         Walk walk(context_);
-        walk.writeTo(&replay.vertices);
-        replay.radiance = samplePixel(walk, x, y, first);
+        const int share = film_.share(pixelIndex(x, y));
+        for (int k = 0; k < share; ++k) {
+            SampleReplay one;
+            walk.writeTo(&one.vertices);
+            one.radiance = samplePixel(walk, x, y, k, first);
+            const bool finite = isFinite(one.radiance.total());
+            if (k > 0 && finite) continue;
+            replay.vertices = std::move(one.vertices);
+            replay.radiance = one.radiance;
+            if (!finite) break;
+        }
         return replay;
     }
 
@@ -186,8 +204,10 @@ private:
     void causticPass();
     void lightPass();
     void eyePass();
+    void renewShares();
     void makeMaps();
-    [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, FirstHit& first, StringSums* strings = nullptr) const;
+    [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, int number, FirstHit& first, StringSums* strings = nullptr) const;
+    [[nodiscard]] std::uint32_t samplesPerPixel() const;
     void bidirectionalPass();
     [[nodiscard]] bool bidirectional() const noexcept { return request_.method == Method::Bdpt || plan_.bidirectional; }
     [[nodiscard]] LayeredRadiance sampleBidirectional(Bidirectional& paths, std::size_t pixel, const glm::vec2& corner,
@@ -245,7 +265,7 @@ private:
     std::vector<bool> inWindow_;       ///< by pixel; empty: all are
     double windowScale_ = 1.0;         ///< pixels of the image / pixels in windows
     std::uint32_t iteration_ = 0, generation_ = 0;
-    double raysOfGeneration_ = 0.0, raysSince_ = 0.0, secondsOfGeneration_ = 0.0;
+    double raysOfGeneration_ = 0.0, raysSince_ = 0.0, secondsOfGeneration_ = 0.0, secondsOfIteration_ = 0.0;
     double lastSave_ = 0.0;
     StageRecord pilotStage_{"pilot"}, causticStage_{"caustic photons"}, globalStage_{"global photons"}, cacheStage_{"irradiance cache"},
         lightStage_{"light tracing"}, eyeStage_{"eye pass"};
@@ -268,6 +288,7 @@ void Renderer::prepare() {
     if (request_.method == Method::Reference) context_.options.left = {plan_.lightPass, plan_.texelWidth > 0.0F};
     if (plan_.texelWidth > 0.0F) texels_ = std::make_unique<TexelIrradiance>(scene_, camera_, plan_.texelWidth);
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
+    context_.options.splitLampChains = plan_.splitLampChains;
     if (!request_.windows.empty()) keepWindows();
 }
 
@@ -309,11 +330,13 @@ void Renderer::makeMaps() {
 }
 
 void Renderer::iterate() {
+    const double once = globalStage_.seconds + cacheStage_.seconds, began = elapsed();
     makeMaps();
     if (plan_.lightPass) lightPass();
     if (bidirectional()) bidirectionalPass();
     else if (request_.method != Method::Light) eyePass();
     else film_.countSamples(1);
+    secondsOfIteration_ = elapsed() - began - (globalStage_.seconds + cacheStage_.seconds - once);
 }
 
 /// Fresh global photons and fresh records, with an error bound that tightens.
@@ -420,12 +443,38 @@ void Renderer::lightPass() {
     learn(std::move(pass.useful));
 }
 
-/// The next sample of a pixel: keyed by seed, pixel and number, whatever was sampled before.
-LayeredRadiance Renderer::samplePixel(Walk& walk, int x, int y, FirstHit& first, StringSums* strings) const {
-    Sampler sampler(request_.seed, pixelIndex(x, y), film_.samples(), samplerKind(request_.settings.sampler));
+/// Sample `number` of this iteration: keyed by seed, pixel and how many went before, whatever was sampled elsewhere.
+LayeredRadiance Renderer::samplePixel(Walk& walk, int x, int y, int number, FirstHit& first, StringSums* strings) const {
+    const std::size_t pixel = pixelIndex(x, y);
+    const std::uint32_t index = (plan_.adaptive ? film_.taken(pixel) : film_.samples()) + static_cast<std::uint32_t>(number);
+    Sampler sampler(request_.seed, pixel, index, samplerKind(request_.settings.sampler));
     const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
     const CameraRay ray = camera_.ray(glm::vec2(static_cast<float>(x), static_cast<float>(y)) + jitter, lens);
     return walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), kernelFootprints(x, y)}, sampler, &first, strings);
+}
+
+/// After iterations 4, 8, 16, ...: samples go where the noise is.
+void Renderer::renewShares() {
+    const std::uint32_t n = film_.samples();
+    if (!plan_.adaptive || n < kUniformIterations || (n & (n - 1)) != 0) return;
+    std::vector<PixelNoise> noise(film_.pixels());
+    double eyeRays = 0.0;
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+        noise[i] = film_.noise(i);
+        if (noise[i].inside) eyeRays += static_cast<double>(noise[i].rays);
+    }
+    ShareLimits limits;
+    if (plan_.causticMap) limits.photonRays = kPhotonRayTime * static_cast<double>(causticStage_.rays) / ((iteration_ + 1) * windowScale_);
+    const Budget& b = request_.budget;
+    const double once = eyeStage_.seconds * static_cast<double>(film_.pixels()) / (windowScale_ * static_cast<double>(std::max<std::uint64_t>(1, film_.taken())));
+    if (b.seconds) limits.mostMean = static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * *b.seconds / std::max(1e-9, once)));
+    if (b.rays) limits.mostMean = static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * static_cast<double>(*b.rays) / std::max(1.0, eyeRays * windowScale_)));
+    film_.setShares(sampleShares(noise, camera_.width(), camera_.height(), limits, hashCombine(request_.seed, n)));
+}
+
+std::uint32_t Renderer::samplesPerPixel() const {
+    if (!plan_.adaptive) return film_.samples();
+    return static_cast<std::uint32_t>(static_cast<double>(film_.taken()) * windowScale_ / static_cast<double>(film_.pixels()));
 }
 
 std::size_t Renderer::tiles() const {
@@ -449,17 +498,29 @@ void Renderer::forTiles(const Body& body) const {
 
 void Renderer::eyePass() {
     const StageTimer timer(eyeStage_, windowScale_);
+    renewShares();
     std::vector<std::uint64_t> rays(tiles(), 0);
     forTiles([&](std::size_t tile, const auto& forPixels) {
         Walk walk(context_);
-        StringSums strings;
+        StringSums strings, ofSample;
         forPixels([&](std::size_t pixel, const glm::vec2& corner) {
             if (!inWindow_.empty() && !inWindow_[pixel]) return;
-            FirstHit first;
+            const std::uint64_t before = walk.rays();
+            const int share = film_.share(pixel);
+            LayeredRadiance sum;
+            FirstHit firsts;
             strings.clear();
-            const LayeredRadiance radiance = samplePixel(walk, static_cast<int>(corner.x), static_cast<int>(corner.y), first,
-                                                         film_.keepsStrings() ? &strings : nullptr);
-            film_.add(pixel, film_.samples(), radiance, first);
+            if (film_.keepsStrings()) sum.strings = &strings;
+            for (int k = 0; k < share; ++k) {
+                FirstHit first;
+                ofSample.clear();
+                const LayeredRadiance radiance = samplePixel(walk, static_cast<int>(corner.x), static_cast<int>(corner.y), k, first,
+                                                             film_.keepsStrings() ? &ofSample : nullptr);
+                if (!film_.admit(pixel, film_.samples(), radiance)) continue;
+                sum.addShare(radiance, 1.0F / static_cast<float>(share));
+                firsts.addShare(first, 1.0F / static_cast<float>(share));
+            }
+            film_.add(pixel, film_.samples(), sum, firsts, share, walk.rays() - before);
         });
         rays[tile] = walk.rays();
     });
@@ -492,7 +553,7 @@ void Renderer::bidirectionalPass() {
             strings.clear();
             const LayeredRadiance radiance =
                 sampleBidirectional(paths, pixel, corner, splats[tile], first, film_.keepsStrings() ? &strings : nullptr);
-            film_.add(pixel, film_.samples(), radiance, first);
+            if (film_.admit(pixel, film_.samples(), radiance)) film_.add(pixel, film_.samples(), radiance, first);
         });
         rays[tile] = paths.rays();
     });
@@ -508,7 +569,7 @@ void Renderer::bidirectionalPass() {
 double Renderer::fractionDone() const {
     const Budget& b = request_.budget;
     double fraction = 0.0;
-    if (b.samples) fraction = std::max(fraction, static_cast<double>(film_.samples()) / std::max<std::uint32_t>(1, *b.samples));
+    if (b.samples) fraction = std::max(fraction, static_cast<double>(samplesPerPixel()) / std::max<std::uint32_t>(1, *b.samples));
     if (b.seconds) fraction = std::max(fraction, elapsed() / std::max(1e-3, *b.seconds));
     if (b.rays) fraction = std::max(fraction, static_cast<double>(raysSoFar()) / static_cast<double>(std::max<std::uint64_t>(1, *b.rays)));
     if (!b.samples && !b.seconds && !b.rays) {
@@ -520,10 +581,9 @@ double Renderer::fractionDone() const {
 
 bool Renderer::finished() const {
     const Budget& b = request_.budget;
-    if (b.samples && film_.samples() >= *b.samples) return true;
+    if (b.samples && samplesPerPixel() >= *b.samples) return true;
     if (iteration_ == 0) return false;
-    const double perIteration = (elapsed() - b.startedSecondsAgo - pilotStage_.seconds - globalStage_.seconds - cacheStage_.seconds) / iteration_;
-    if (b.seconds && elapsed() + 0.5 * perIteration >= *b.seconds) return true;
+    if (b.seconds && elapsed() + 0.5 * secondsOfIteration_ >= *b.seconds) return true;
     if (b.rays) {
         const std::uint64_t once = pilotStage_.rays + globalStage_.rays + cacheStage_.rays, all = raysSoFar();
         if (all + (all - once) / (2 * iteration_) >= *b.rays) return true;
@@ -540,7 +600,7 @@ void Renderer::tell(std::string_view stage) const {
     r.fraction = fractionDone();
     r.secondsElapsed = elapsed();
     if (r.fraction > 0.0) r.secondsLeft = r.secondsElapsed * (1.0 / r.fraction - 1.0);
-    r.samplesPerSecond = static_cast<double>(film_.samples()) * static_cast<double>(film_.pixels()) / std::max(1e-6, r.secondsElapsed);
+    r.samplesPerSecond = static_cast<double>(samplesPerPixel()) * static_cast<double>(film_.pixels()) / std::max(1e-6, r.secondsElapsed);
     progress_.report(r);
 }
 
@@ -551,7 +611,7 @@ RenderRecord Renderer::record() const {
     for (const StageRecord* s : {&pilotStage_, &globalStage_, &cacheStage_, &causticStage_, &lightStage_, &eyeStage_})
         r.stages.push_back(withMeanEnergy(*s, scene_.normalisation().scale()));
     r.iterations = iteration_;
-    r.samplesPerPixel = film_.samples();
+    r.samplesPerPixel = samplesPerPixel();
     r.seconds = elapsed();
     r.errorEstimate = film_.relativeError();
     r.nonfinite = film_.nonfinite();

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kBins = 12;
 constexpr int kMaxUnbalancedDepth = 48;  ///< below it ranges are halved, so that the depth stays near 48 + log2 n
+constexpr float kLeastMean = 0.25F;     ///< of full emission, for a node as large as its distance
 constexpr double kSlack = 1e-4;          ///< radians added to joined cones against rounding: bounds must hold
 
 /// The smallest cone around two cones of half angles `a.spread`, `b.spread`. [ContyEstevezKulla2018]
@@ -73,6 +74,27 @@ float sineOfDifference(float sinA, float cosA, float sinB, float cosB) noexcept 
 float otherOf(float x) noexcept { return std::sqrt(std::max(0.0F, 1.0F - x * x)); }
 
 }  // namespace
+
+MeanEmission MeanEmission::of(const LightBounds& light) noexcept {
+    if (light.spread > 0.0 || light.emission < 0.49 * kPiD) return {1.0F, {}, {}, {}};  // no Lambert emitter: the bounds tell all
+    const glm::vec3& n = light.axis;
+    MeanEmission mean;
+    const float square = light.twoSided ? 15.0F / 16.0F : 15.0F / 32.0F;
+    mean.constant = light.twoSided ? 3.0F / 16.0F : 3.0F / 32.0F;
+    if (!light.twoSided) mean.linear = 0.5F * n;
+    mean.diagonal = square * n * n;
+    mean.across = square * glm::vec3(n.x * n.y, n.y * n.z, n.z * n.x);
+    return mean;
+}
+
+void MeanEmission::join(double strength, const MeanEmission& other, double otherStrength) noexcept {
+    const double total = strength + otherStrength;
+    const auto share = static_cast<float>(total > 0.0 ? otherStrength / total : 0.0), rest = 1.0F - share;
+    constant = rest * constant + share * other.constant;
+    linear = rest * linear + share * other.linear;
+    diagonal = rest * diagonal + share * other.diagonal;
+    across = rest * across + share * other.across;
+}
 
 struct LightTree::Builder {
     std::span<const LightBounds> lights;
@@ -145,17 +167,22 @@ struct LightTree::Builder {
         const auto self = static_cast<std::uint32_t>(tree.nodes_.size());
         tree.nodes_.emplace_back();
         LightBounds bounds;
+        MeanEmission mean;
         std::uint32_t second = 0;
         const bool leaf = end - begin == 1;
         if (leaf) {
             second = order[begin];
             bounds = lights[second];
+            mean = MeanEmission::of(bounds);
             tree.leafOf_[second] = self;
         } else {
             const std::size_t middle = part(begin, end, depth);
             bounds = build(begin, middle, self, depth + 1);
             second = static_cast<std::uint32_t>(tree.nodes_.size());
-            join(bounds, build(middle, end, self, depth + 1));
+            const LightBounds other = build(middle, end, self, depth + 1);
+            mean = tree.nodes_[self + 1].mean;
+            mean.join(bounds.strength, tree.nodes_[second].mean, other.strength);
+            join(bounds, other);
         }
         Node& node = tree.nodes_[self];
         node.centre = bounds.box.centre();
@@ -169,6 +196,7 @@ struct LightTree::Builder {
         node.parent = parent;
         node.leaf = leaf;
         node.twoSided = bounds.twoSided;
+        node.mean = mean;
         return bounds;
     }
 };
@@ -207,7 +235,9 @@ float LightTree::importance(const Node& node, const glm::vec3& point, const glm:
         cosReceived = cosineOfDifference(otherOf(cosNormal), cosNormal, sinSize, cosSize);
         if (cosReceived <= 0.0F) return 0.0F;
     }
-    return node.strength * std::max(cosEmitted, 0.01F) * cosReceived / softened2;
+    // A leaf's bound is exact enough; the closer a large node, the less its mean over far directions says.
+    const float emitted = node.leaf ? cosEmitted : std::min(cosEmitted, std::max(node.mean.towards(-wi), kLeastMean * sinSize));
+    return node.strength * std::max(emitted, 0.01F) * cosReceived / softened2;
 }
 
 float LightTree::importance(const glm::vec3& point, const glm::vec3& normal) const noexcept {

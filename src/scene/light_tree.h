@@ -1,6 +1,8 @@
 /// A binary tree over many finite lights, walked from the root with probabilities in proportion to what each child may
 /// send to the shading point: strength, distance, orientation. [ContyEstevezKulla2018] A child gets probability 0 only
-/// where none of its lights can reach the point, so the estimate stays unbiased. Private to the room.
+/// where none of its lights can reach the point, so the estimate stays unbiased. Bounds alone know little of a node whose
+/// lights face every way, such as half of a glowing ball: what it sends on the mean in a direction is kept beside them, by
+/// the spherical harmonics of the cosine up to order two [RamamoorthiHanrahan2001]. Private to the room.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +24,22 @@ struct LightBounds {
     double spread = 0.0, emission = 0.0;
     double strength = 0.0;
     bool twoSided = false;
+};
+
+/// Share of full strength that lights send in direction w on the mean: constant + linear . w + w' quadratic w.
+/// max(0, n . w) = 1/4 + n . w / 2 + 5/32 (3 (n . w)^2 - 1) + ..., |n . w| = 1/2 + 5/16 (3 (n . w)^2 - 1) + ...
+struct MeanEmission {
+    float constant = 0.0F;
+    glm::vec3 linear{0.0F};
+    glm::vec3 diagonal{0.0F}, across{0.0F};  ///< of the quadratic form: xx yy zz, xy yz zx
+
+    [[nodiscard]] static MeanEmission of(const LightBounds& light) noexcept;
+    /// Strengths weigh; they are those of `this` and of `other`.
+    void join(double strength, const MeanEmission& other, double otherStrength) noexcept;
+    [[nodiscard]] float towards(const glm::vec3& w) const noexcept {
+        return constant + glm::dot(linear, w) + glm::dot(diagonal, w * w) +
+               2.0F * (across.x * w.x * w.y + across.y * w.y * w.z + across.z * w.z * w.x);
+    }
 };
 
 class LightTree {
@@ -54,6 +72,7 @@ private:
         std::uint32_t second = 0;  ///< the second child (the first stands next to its parent), or the light of a leaf
         std::uint32_t parent = 0;
         bool leaf = false, twoSided = false;
+        MeanEmission mean;
     };
     struct Builder;
 

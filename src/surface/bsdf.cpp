@@ -140,6 +140,33 @@ std::optional<BsdfSample> Bsdf::sample(const glm::vec3& wo, float choose, const 
     return made;
 }
 
+DeltaBranches Bsdf::deltaBranches(const glm::vec3& wo, TransportMode mode) const noexcept {
+    DeltaBranches found;
+    const glm::vec3 local = frame_.toLocal(wo);
+    if (!(local.z > 0.0F) || !sameSide(local, wo)) return found;
+    const auto add = [&](const Lobe& lobe, const LobeDirection& direction, float chance) {
+        const glm::vec3 world = frame_.toWorld(direction.wi);
+        const Rgb weight = direction.weight * (lobe.weight * chance);
+        if (isBlack(weight) || !sameSide(direction.wi, world)) return;
+        found.branch[static_cast<std::size_t>(found.count++)] = {world, weight, 0.0F, lobe.kind, true, direction.wi.z < 0.0F, direction.etaScale};
+    };
+    for (int i = 0; i < count_; ++i) {
+        const Lobe& lobe = lobes_[static_cast<std::size_t>(i)];
+        if (!lobe.delta) continue;
+        visitModel(lobe, [&](const auto& model) {
+            const float reflected = deltaReflectionChance(model, local);
+            for (const bool reflect : {true, false}) {
+                const float chance = reflect ? reflected : 1.0F - reflected;
+                LobeDirection direction;
+                if (reflect ? reflected <= 0.0F : reflected > kOneMinusEpsilon) continue;
+                if (sampleLobe(model, local, reflect ? 0.0F : kOneMinusEpsilon, glm::vec2(0.5F), mode, direction))
+                    add(lobe, direction, chance);
+            }
+        });
+    }
+    return found;
+}
+
 /// The share of the lobes that are no delta lobes, and whether one of them lets light through.
 struct Bsdf::BlindShare {
     float probability = 0.0F;

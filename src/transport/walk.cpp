@@ -47,11 +47,13 @@ struct Walk::State {
     float etaScale = 1.0F, pathLength = 0.0F;
     int vertices = 0;
     bool gathering = false;          ///< behind the first D vertex: the global map may answer
+    bool deltaChain = true;          ///< from the eye: no other lobe so far
+    bool lampsFollowed = false;      ///< over that chain, by LampChains
     bool causticServed = false;      ///< at this D vertex: what comes over S alone is counted
 
     /// Whether a lamp that is met now belongs to path tracing.
     [[nodiscard]] bool lampCounts(const LeftClasses& left) const noexcept {
-        if (left.has(ledger.path())) return false;
+        if (left.has(ledger.path()) || (deltaChain && lampsFollowed)) return false;
         if (chainEmpty) return !skipDirect;
         return behind != Behind::CausticMapped || !chainSpecular;
     }
@@ -138,7 +140,9 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius);
         PathString path = state.ledger.pathAfter(kDiffuse);
         path.pass(kSpecular);
-        state.radiance.add(path, state.throughput * outgoing * irradiance);
+        const Rgb seen = state.throughput * outgoing * irradiance;
+        state.radiance.add(path, seen);
+        state.radiance.shared += luminance(seen);
     }
     if (maps.cache != nullptr) {
         if (const auto cached = maps.cache->lookup(position, normal)) {
@@ -214,6 +218,7 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
         kind = static_cast<LobeKinds>(1 << chosen);
         weight = f[chosen] * (total / (average(f[chosen]) * sample->pdfSolidAngle));
     }
+    state.deltaChain = state.deltaChain && sample->delta;
     state.throughput *= weight;
     state.etaScale *= sample->etaScale;
     const bool casts = kind == kSpecular;
@@ -276,6 +281,11 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     }
     const LobeKinds kinds = bsdf.kinds();
     if (kinds == kNoLobe || (context_.options.maxDepth > 0 && state.vertices > context_.options.maxDepth)) return false;
+    if (context_.options.splitLampChains && state.deltaChain && !state.gathering && !state.lampsFollowed && LampChains::splits(bsdf, wo)) {
+        state.lampsFollowed = true;
+        lampChains_.follow({*hit, bsdf, wo, state.throughput, state.ray.absorption, state.etaScale, state.ledger, state.vertices}, sampler,
+                           state.radiance);
+    }
     LobeKinds sampled = kinds & (kSpecular | kGlossy);
     LobeKinds direct = kinds;
     state.causticServed = false;

@@ -16,6 +16,15 @@
 
 namespace pellucid {
 
+/// What a pixel has shown so far. Variances are of one sample, not of the mean.
+struct PixelNoise {
+    float eyeVariance = 0.0F;         ///< of the luminance of an eye sample
+    float photonVariance = 0.0F;      ///< of the luminance that an iteration's photons give
+    float luminance = 0.0F;
+    float rays = 1.0F;                ///< of an eye sample
+    bool inside = true;               ///< false: not rendered
+};
+
 class Film {
 public:
     Film(int width, int height);
@@ -24,16 +33,28 @@ public:
     void keepStrings(LobeKinds kinds);
     [[nodiscard]] bool keepsStrings() const noexcept { return !stringSlots_.empty(); }
 
-    /// Adds a sample of `pixel`. Values that are not finite are counted and left out. Only the thread that owns the pixel.
-    void add(std::size_t pixel, std::uint32_t sample, const LayeredRadiance& radiance, const FirstHit& first) noexcept;
+    /// Whether a sample is finite; one that is not is counted, and has to be left out. Only the thread that owns the pixel.
+    [[nodiscard]] bool admit(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance) noexcept;
+    /// Adds the mean of the samples that `pixel` took in an iteration. Only the thread that owns the pixel.
+    void add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance, const FirstHit& first, int samples = 1,
+             std::uint64_t rays = 0) noexcept;
     /// Adds the splats of a light pass, in their order. `pass` counts light passes.
     void addSplats(const std::vector<LightSplat>& splats, std::uint32_t pass) noexcept;
-    /// Tells that every pixel has got one more sample (splats count apart).
+    /// Tells that an iteration is over: every pixel has got one more term (splats count apart).
     void countSamples(std::uint32_t samples) noexcept { samples_ += samples; }
+
+    /// How many samples `pixel` takes in an iteration to come, and how many it has taken.
+    [[nodiscard]] int share(std::size_t pixel) const noexcept { return pixels_[pixel].share; }
+    [[nodiscard]] std::uint32_t taken(std::size_t pixel) const noexcept { return pixels_[pixel].taken; }
+    void setShares(const std::vector<std::uint8_t>& shares) noexcept;
+    [[nodiscard]] std::uint64_t taken() const noexcept;
+    /// What `pixel` has shown of its noise. From two iterations on.
+    [[nodiscard]] PixelNoise noise(std::size_t pixel) const noexcept;
 
     [[nodiscard]] int width() const noexcept { return width_; }
     [[nodiscard]] int height() const noexcept { return height_; }
     [[nodiscard]] std::size_t pixels() const noexcept { return pixels_.size(); }
+    /// Iterations: terms of every pixel's mean.
     [[nodiscard]] std::uint32_t samples() const noexcept { return samples_; }
 
     /// The mean: R G B, the four layers, and the auxiliary `layers` asked for.
@@ -53,10 +74,15 @@ public:
 private:
     struct Pixel {
         double layer[kPathClasses][3] = {};
-        double half[3] = {};          ///< samples with odd index
+        double half[3] = {};          ///< of odd iterations
         double splat[kPathClasses][3] = {};
         double splatHalf[3] = {};
-        double square = 0.0;          ///< of the luminance of samples
+        double square = 0.0;          ///< of the luminance of an iteration's mean
+        double eyeSum = 0.0, eyeSquare = 0.0;  ///< of the luminance without what photons gave, weighed by the number of samples
+        double sharedSum = 0.0, sharedSquare = 0.0;  ///< of the luminance that photons gave
+        std::uint64_t rays = 0;
+        std::uint32_t taken = 0;
+        std::uint8_t share = 1;
         double splatSquare = 0.0;     ///< of the luminance of a pass's splats
         float splatPass = 0.0F;       ///< while a pass is added
         float albedo[3] = {}, normal[3] = {};

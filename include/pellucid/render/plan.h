@@ -42,6 +42,8 @@ struct Plan {
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
     bool bidirectional = false;          ///< eye paths meet light paths
     float texelWidth = 0.0F;             ///< of the texel irradiance, scene units; 0: off
+    bool splitLampChains = false;        ///< lamps seen through smooth glass: both ways at each interface
+    bool adaptive = false;               ///< pixels take samples by their noise
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;
     std::vector<std::string> blindSpots;

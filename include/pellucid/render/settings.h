@@ -21,6 +21,8 @@ struct Settings {
     std::string sampler = "sobol";          ///< path.sampler: independent | stratified | halton | sobol
     double rouletteThreshold = 1.0;         ///< path.roulette: throughput below which Russian roulette may end a path; 0: never
     int maxDepth = 0;                       ///< path.max_depth: number of surface vertices; 0: no limit
+    std::string split = "auto";             ///< path.split: auto | on | off
+    std::string adaptive = "auto";          ///< path.adaptive: auto | on | off
     // surfaces
     double castRoughness = 0.3;             ///< surface.cast_roughness
     // photons

@@ -126,6 +126,13 @@ struct BsdfValue {
     float pdfSolidAngle = 0.0F;
 };
 
+/// See Bsdf::deltaBranches.
+struct DeltaBranches {
+    static constexpr int kMost = 8;
+    std::array<BsdfSample, kMost> branch;
+    int count = 0;
+};
+
 class Bsdf {
 public:
     /// eval() and pdf() at once, for less than the price of both.
@@ -148,6 +155,9 @@ public:
     [[nodiscard]] std::optional<BsdfSample> sample(const glm::vec3& wo, float chooseLobe, const glm::vec2& u, LobeKinds kinds,
                                                    TransportMode mode, Directions directions) const noexcept;
     [[nodiscard]] float pdf(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, Directions directions) const noexcept;
+
+    /// All directions that the delta lobes lead to, each with its whole weight: where an interface splits light, both ways.
+    [[nodiscard]] DeltaBranches deltaBranches(const glm::vec3& wo, TransportMode mode) const noexcept;
 
     [[nodiscard]] LobeKinds kinds() const noexcept { return kinds_; }
     /// Whether some lobe has a value for a given pair of directions: not all of them are delta lobes.

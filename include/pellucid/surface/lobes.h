@@ -209,6 +209,13 @@ inline void sampleSmoothDielectric(const DielectricLobe& lobe, const glm::vec3& 
     return reflect ? wi.z > 0.0F : wi.z < 0.0F;
 }
 
+/// With which sampleLobe() of a delta lobe reflects: it does so for the lowest part of `choose`.
+template <class Model>
+[[nodiscard]] inline float deltaReflectionChance(const Model&, const glm::vec3&) noexcept { return 1.0F; }
+[[nodiscard]] inline float deltaReflectionChance(const DielectricLobe& lobe, const glm::vec3& wo) noexcept {
+    return detail::reflectionChance(lobe, dielectricReflectance(lobe, wo.z));
+}
+
 /// Guessed directional albedo for choosing lobes: never 0 for a lobe that can carry light.
 [[nodiscard]] inline float estimateAlbedo(const DiffuseLobe& lobe, const glm::vec3& wo) noexcept {
     const float mean = lobe.a - lobe.b * (1.0F / 21.0F);  // 2 int T(c) c dc

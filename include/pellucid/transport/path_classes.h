@@ -100,11 +100,20 @@ using StringSums = std::vector<std::pair<PathString, Rgb>>;
 /// Radiance by path class; their sum is the pixel.
 struct LayeredRadiance {
     std::array<Rgb, kPathClasses> layer{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};
+    float shared = 0.0F;            ///< luminance of what photons gave, which other samples of the iteration see too
     StringSums* strings = nullptr;  ///< not owned; receives the same radiance by string
 
     void add(PathString path, const Rgb& radiance) {
         (*this)[path.layer()] += radiance;
         if (strings != nullptr) strings->emplace_back(path, radiance);
+    }
+
+    /// For means over samples.
+    void addShare(const LayeredRadiance& other, float weight) {
+        for (std::size_t l = 0; l < layer.size(); ++l) layer[l] += other.layer[l] * weight;
+        shared += other.shared * weight;
+        if (strings != nullptr && other.strings != nullptr)
+            for (const auto& [path, radiance] : *other.strings) strings->emplace_back(path, radiance * weight);
     }
 
     [[nodiscard]] Rgb& operator[](PathClass c) noexcept { return layer[static_cast<std::size_t>(c)]; }

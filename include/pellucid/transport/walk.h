@@ -7,6 +7,7 @@
 
 #include <pellucid/math/sampler.h>
 #include <pellucid/scene/scene.h>
+#include <pellucid/transport/lamp_chains.h>
 #include <pellucid/transport/path_classes.h>
 #include <pellucid/transport/walk_trace.h>
 
@@ -36,6 +37,7 @@ struct TransportOptions {
     float rouletteThreshold = 1.0F;   ///< 0: no Russian roulette
     int maxDepth = 0;                 ///< surface vertices; 0: no limit
     LeftClasses left;                 ///< classes that others carry
+    bool splitLampChains = false;     ///< E S* L over glass: by LampChains, not by chance
 };
 
 struct TransportContext {
@@ -50,6 +52,14 @@ struct FirstHit {
     glm::vec3 normal{0.0F};
     float depth = 0.0F;               ///< scene units; 0: nothing was hit
     float kernelRadius = 0.0F;        ///< of the caustic look-up, scene units
+
+    /// For means over samples.
+    void addShare(const FirstHit& other, float weight) noexcept {
+        albedo += other.albedo * weight;
+        normal += other.normal * weight;
+        depth += other.depth * weight;
+        kernelRadius += other.kernelRadius * weight;
+    }
 };
 
 /// A D vertex where the eye path ends: where the cache wants a record, a photon is useful.
@@ -73,7 +83,8 @@ struct WalkRay {
 
 class Walk {
 public:
-    explicit Walk(const TransportContext& context) noexcept : context_(context), holes_(context.scene.hasHoles()) {}
+    explicit Walk(const TransportContext& context) noexcept
+        : context_(context), holes_(context.scene.hasHoles()), lampChains_(context.scene, context.options.maxDepth) {}
 
     /// Radiance along a camera ray, by class. `dimension`s of the sampler from 2 on are used, 8 a vertex. `strings`
     /// receives the same radiance by path string.
@@ -90,7 +101,7 @@ public:
     /// From now on every vertex is written down there (null: no longer).
     void writeTo(WalkTrace* trace) noexcept { trace_ = trace; }
 
-    [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
+    [[nodiscard]] std::uint64_t rays() const noexcept { return rays_ + lampChains_.rays(); }
     [[nodiscard]] std::uint64_t cacheMisses() const noexcept { return cacheMisses_; }
 
 private:
@@ -111,6 +122,7 @@ private:
 
     const TransportContext& context_;
     bool holes_;
+    LampChains lampChains_;
     WalkTrace* trace_ = nullptr;
     std::uint64_t rays_ = 0, cacheMisses_ = 0;
 };

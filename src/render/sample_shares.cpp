@@ -1,0 +1,125 @@
+#include "sample_shares.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <pellucid/math/hash.h>
+
+namespace pellucid {
+
+namespace {
+
+/// Few samples know little of a pixel's variance: it is taken over a neighbourhood.
+constexpr int kNeighbours = 3;
+/// Of a pixel's own variance, beside its neighbours'.
+constexpr float kOwnShare = 0.25F;
+constexpr float kFloor = 0.01F;  ///< of relmse, in squares of the mean
+/// The kernels' bias is about as large as the photons' noise, squared, and falls more slowly.
+constexpr double kBiasAndNoise = 3.0;
+constexpr std::array<float, 7> kMeans{1.0F, 1.5F, 2.0F, 3.0F, 4.0F, 6.0F, 8.0F};
+
+/// Means over squares of (2 kNeighbours + 1)^2, cut at the border.
+[[nodiscard]] std::vector<float> blurred(const std::vector<float>& value, int width, int height) {
+    const auto at = [width](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); };
+    std::vector<float> rows(value.size()), result(value.size());
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const int first = std::max(0, x - kNeighbours), last = std::min(width - 1, x + kNeighbours);
+            float sum = 0.0F;
+            for (int i = first; i <= last; ++i) sum += value[at(i, y)];
+            rows[at(x, y)] = sum / static_cast<float>(last - first + 1);
+        }
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const int first = std::max(0, y - kNeighbours), last = std::min(height - 1, y + kNeighbours);
+            float sum = 0.0F;
+            for (int i = first; i <= last; ++i) sum += rows[at(x, i)];
+            result[at(x, y)] = sum / static_cast<float>(last - first + 1);
+        }
+    return result;
+}
+
+struct Need {
+    std::vector<float> relative;      ///< eye variance of a sample / (L^2 + e2)
+    std::vector<float> rays;
+    double photons = 0.0;             ///< sum of the photons' relative variance
+};
+
+[[nodiscard]] Need needOf(const std::vector<PixelNoise>& noise, int width, int height) {
+    double mean = 0.0, inside = 0.0;
+    for (const PixelNoise& p : noise)
+        if (p.inside) mean += static_cast<double>(p.luminance), inside += 1.0;
+    mean /= std::max(1.0, inside);
+    const float floor = std::max(kFloor * static_cast<float>(mean * mean), 1e-30F);
+    Need need;
+    std::vector<float> own(noise.size());
+    need.rays.resize(noise.size());
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+        const PixelNoise& p = noise[i];
+        const float reference = p.luminance * p.luminance + floor;
+        own[i] = p.inside ? p.eyeVariance / reference : 0.0F;
+        need.rays[i] = std::max(1.0F, p.rays);
+        if (p.inside) need.photons += static_cast<double>(p.photonVariance / reference);
+    }
+    need.relative = blurred(own, width, height);
+    for (std::size_t i = 0; i < noise.size(); ++i)
+        need.relative[i] = noise[i].inside ? (1.0F - kOwnShare) * need.relative[i] + kOwnShare * own[i] : 0.0F;
+    return need;
+}
+
+/// Real-valued samples of a pixel when the price of a ray's worth of variance is `scale`.
+[[nodiscard]] float wanted(const Need& need, std::size_t i, float scale, float most) {
+    return std::clamp(scale * std::sqrt(need.relative[i] / need.rays[i]), 1.0F, most);
+}
+
+struct Allotment {
+    float scale = 0.0F;
+    double cost = 0.0;                ///< (photons' + eye's variance) x (photons' + eye's rays)
+};
+
+[[nodiscard]] Allotment allot(const std::vector<PixelNoise>& noise, const Need& need, double mean, const ShareLimits& limits) {
+    double inside = 0.0;
+    for (const PixelNoise& p : noise) inside += p.inside ? 1.0 : 0.0;
+    float low = 1e-6F, high = 1e12F;
+    for (int step = 0; step < 60; ++step) {
+        const float middle = std::sqrt(low) * std::sqrt(high);
+        double samples = 0.0;
+        for (std::size_t i = 0; i < noise.size(); ++i)
+            if (noise[i].inside) samples += static_cast<double>(wanted(need, i, middle, limits.mostOfPixel));
+        (samples < mean * inside ? low : high) = middle;
+    }
+    Allotment result{low, 0.0};
+    double variance = kBiasAndNoise * need.photons, rays = limits.photonRays;
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+        if (!noise[i].inside) continue;
+        const float k = wanted(need, i, low, limits.mostOfPixel);
+        variance += static_cast<double>(need.relative[i] / k);
+        rays += static_cast<double>(need.rays[i] * k);
+    }
+    result.cost = variance * rays;
+    return result;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
+                                       std::uint64_t seed) {
+    const Need need = needOf(noise, width, height);
+    Allotment best{0.0F, 0.0};
+    for (const float mean : kMeans) {
+        if (mean > limits.mostMean && mean > 1.0F) break;
+        const Allotment a = mean > 1.0F ? allot(noise, need, static_cast<double>(mean), limits) : Allotment{0.0F, allot(noise, need, 1.0, limits).cost};
+        if (mean == 1.0F || a.cost < best.cost) best = a;
+    }
+    std::vector<std::uint8_t> shares(noise.size(), 1);
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+        if (!noise[i].inside) continue;
+        const float k = wanted(need, i, best.scale, limits.mostOfPixel), whole = std::floor(k);
+        const float u = static_cast<float>(hash64(seed + i) >> 40U) * 0x1p-24F;
+        shares[i] = static_cast<std::uint8_t>(whole + (u < k - whole ? 1.0F : 0.0F));
+    }
+    return shares;
+}
+
+}  // namespace pellucid

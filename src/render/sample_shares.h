@@ -1,0 +1,30 @@
+/// Adaptive sampling in image space: how many eye samples each pixel takes in every iteration to come.
+///
+/// A pixel's value is the plain mean over iterations of the mean of its samples in each, and a number of samples is fixed
+/// from iterations before it alone: so each term, and the mean, is unbiased. (Weighing terms by their number of samples
+/// would not be: pixels that were bright by chance would take more samples and count them.)
+///
+/// With v the variance of one eye sample, c its rays, L the pixel's luminance and e2 the floor of relmse, the sum over pixels
+/// of v / (k (L^2 + e2)) is least for a given number of rays when k ~ sqrt(v / (c (L^2 + e2))). The photons' noise P is
+/// the same for all samples of an iteration; the mean of k makes (P + Q) (rays of the photon pass + rays of the eye pass)
+/// least, Q being the eye samples' relative variance.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <pellucid/render/film.h>
+
+namespace pellucid {
+
+struct ShareLimits {
+    float mostOfPixel = 32.0F;        ///< samples of one pixel in an iteration
+    float mostMean = 8.0F;            ///< of an iteration, over the pixels
+    double photonRays = 0.0;          ///< of an iteration, in units of an eye ray's time
+};
+
+/// Samples for each pixel in an iteration, at least 1. `seed` keys the rounding.
+[[nodiscard]] std::vector<std::uint8_t> sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
+                                                     std::uint64_t seed);
+
+}  // namespace pellucid

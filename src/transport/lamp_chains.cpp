@@ -1,0 +1,74 @@
+#include <pellucid/transport/lamp_chains.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "medium.h"
+
+namespace pellucid {
+
+namespace {
+
+/// Beyond those that a walk uses.
+constexpr std::uint64_t kDimension = 1ULL << 20U;
+/// Roulette sets in below this throughput.
+constexpr float kLeastThroughput = 0.05F;
+/// As in a walk: no chain goes on for certain for ever.
+constexpr int kCertainVertices = 64;
+constexpr float kSurvivalBeyond = 0.9995F;
+
+}  // namespace
+
+bool LampChains::splits(const Bsdf& bsdf, const glm::vec3& wo) noexcept {
+    return (bsdf.kinds() & kSpecular) != kNoLobe && bsdf.deltaBranches(wo, TransportMode::Radiance).count > 1;
+}
+
+void LampChains::branchOff(const ChainVertex& vertex, Sampler& sampler) {
+    const DeltaBranches branches = vertex.bsdf.deltaBranches(vertex.wo, TransportMode::Radiance);
+    const glm::vec3& ng = vertex.bsdf.geometricNormal();
+    for (int i = 0; i < branches.count; ++i) {
+        const BsdfSample& way = branches.branch[static_cast<std::size_t>(i)];
+        Branch b;
+        b.throughput = vertex.throughput * way.weight;
+        b.etaScale = vertex.etaScale * way.etaScale;
+        float survive = std::min(1.0F, maxComponent(b.throughput) * b.etaScale / kLeastThroughput);
+        if (vertex.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
+        if (!(survive > 0.0F) || (survive < 1.0F && sampler.next1D() >= survive)) continue;
+        b.throughput /= survive;
+        const bool behind = glm::dot(way.wi, ng) < 0.0F;
+        b.ray = Ray{offsetOrigin(vertex.hit.point.position, behind ? -ng : ng), way.wi, std::numeric_limits<float>::infinity()};
+        b.absorption = medium::afterHit(scene_, vertex.hit.point, vertex.bsdf, vertex.absorption, way.transmitted);
+        b.ledger = vertex.ledger;
+        b.ledger.pass(way.kind);
+        b.vertices = vertex.vertices;
+        waiting_.push_back(b);
+    }
+}
+
+void LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadiance& sum) {
+    sampler.setDimension(kDimension);
+    waiting_.clear();
+    branchOff(vertex, sampler);
+    while (!waiting_.empty()) {
+        const Branch b = waiting_.back();
+        waiting_.pop_back();
+        ++rays_;
+        const auto hit = scene_.intersect(b.ray, scene_.hasHoles() ? sampler.next1D() : 0.0F);
+        if (!hit) {
+            if (const Environment* environment = scene_.environment())
+                sum.add(b.ledger.path(), b.throughput * environment->radiance(b.ray.direction));
+            continue;
+        }
+        const glm::vec3 wo = -b.ray.direction;
+        const Bsdf bsdf = scene_.surfaces().bsdf(hit->point, wo);
+        const Rgb absorption = medium::beforeHit(scene_, hit->point, bsdf, b.absorption);
+        const Rgb throughput = b.throughput * medium::transmittance(absorption, hit->distance);
+        const Rgb emitted = scene_.surfaces().emittedRadiance(hit->point, wo);
+        if (!isBlack(emitted)) sum.add(b.ledger.path(), throughput * emitted);
+        const int vertices = b.vertices + 1;
+        if ((bsdf.kinds() & (kSpecular | kGlossy)) != kNoLobe && (maxDepth_ == 0 || vertices <= maxDepth_))
+            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.ledger, vertices}, sampler);
+    }
+}
+
+}  // namespace pellucid
