@@ -33,6 +33,7 @@ bool Film::admit(std::size_t pixel, std::uint32_t iteration, const LayeredRadian
 
 void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance, const FirstHit& first, int samples,
                std::uint64_t rays) noexcept {
+    if (!admit(pixel, iteration, radiance)) return;
     Pixel& p = pixels_[pixel];
     const Rgb total = radiance.total();
     for (std::size_t l = 0; l < kPathClasses; ++l)

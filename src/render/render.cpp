@@ -553,7 +553,7 @@ void Renderer::bidirectionalPass() {
             strings.clear();
             const LayeredRadiance radiance =
                 sampleBidirectional(paths, pixel, corner, splats[tile], first, film_.keepsStrings() ? &strings : nullptr);
-            if (film_.admit(pixel, film_.samples(), radiance)) film_.add(pixel, film_.samples(), radiance, first);
+            film_.add(pixel, film_.samples(), radiance, first);
         });
         rays[tile] = paths.rays();
     });

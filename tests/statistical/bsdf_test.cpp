@@ -305,6 +305,33 @@ TEST(BsdfFurnace, SmoothGlassKeepsAllEnergyAndScalesRadiance) {
         }
 }
 
+/// Both ways of an interface, each with its whole weight, are the mean of the ways chosen by chance.
+TEST(Bsdf, DeltaBranchesAreTheMeanOfSamples) {
+    Material thin = body(0.0F);
+    thin.thickness = 0.0F;
+    const std::vector<Material> list{body(0.0F), thin, body(0.0F, 1.0F)};
+    const SurfaceModel model(list, {});
+    for (std::uint32_t m = 0; m < list.size(); ++m)
+        for (const float cosine : {1.0F, 0.3F, 0.02F, -0.2F, -0.9F}) {
+            const glm::vec3 wo = direction(cosine);
+            const Bsdf bsdf = model.bsdf(pointOf(m), wo);
+            const DeltaBranches branches = bsdf.deltaBranches(wo, TransportMode::Radiance);
+            float reflected = 0.0F, transmitted = 0.0F, sampledReflected = 0.0F, sampledTransmitted = 0.0F;
+            for (int i = 0; i < branches.count; ++i) {
+                const BsdfSample& b = branches.branch[static_cast<std::size_t>(i)];
+                (b.transmitted ? transmitted : reflected) += b.weight.g;
+            }
+            constexpr int kDraws = 20000;
+            for (int i = 0; i < kDraws; ++i) {
+                const auto s = bsdf.sample(wo, (static_cast<float>(i) + 0.5F) / kDraws, {0.5F, 0.5F}, kAllLobes, TransportMode::Radiance);
+                ASSERT_TRUE(s && s->delta);
+                (s->transmitted ? sampledTransmitted : sampledReflected) += s->weight.g / kDraws;
+            }
+            EXPECT_NEAR(reflected, sampledReflected, 2e-3F) << m << ' ' << cosine;
+            EXPECT_NEAR(transmitted, sampledTransmitted, 5e-3F) << m << ' ' << cosine;
+        }
+}
+
 TEST(Bsdf, Reciprocity) {
     std::vector<Material> list;
     for (const Material& m : materials())

@@ -35,7 +35,7 @@ public:
 
     /// Whether a sample is finite; one that is not is counted, and has to be left out. Only the thread that owns the pixel.
     [[nodiscard]] bool admit(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance) noexcept;
-    /// Adds the mean of the samples that `pixel` took in an iteration. Only the thread that owns the pixel.
+    /// Adds the mean of the samples that `pixel` took in an iteration, if it is finite. Only the thread that owns the pixel.
     void add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance, const FirstHit& first, int samples = 1,
              std::uint64_t rays = 0) noexcept;
     /// Adds the splats of a light pass, in their order. `pass` counts light passes.

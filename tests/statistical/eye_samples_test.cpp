@@ -1,0 +1,127 @@
+/// How eye samples are spread: over noisy pixels, and over both ways that an interface leads to a lamp. Neither may change
+/// what the image means, nor its bits with threads or a break.
+#include <filesystem>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "agreement.h"
+#include "small_scenes.h"
+
+namespace pellucid {
+namespace {
+
+using namespace testing;
+
+Settings with(Settings settings, const std::string& name, const std::string& value) {
+    setParameter(settings, name, value);
+    return settings;
+}
+
+/// A glass ball under a lamp that it shows as a glint.
+SmallScene glint() {
+    check::SceneBuilder b;
+    detail::addCorner(b, detail::coloured({0.5F, 0.5F, 0.5F}), detail::coloured({0.4F, 0.5F, 0.6F}));
+    b.sphere({0.0, 0.6, 0.0}, 0.55, 24, check::glass(1.5F), true);
+    b.square({0.6, 2.2, 1.2}, {0, -1, 0}, 0.25, check::lamp(60.0F));
+    return {"glint", b.description()};
+}
+
+TEST(EyeSamples, SplitLampChainsMeanTheSame) {
+    const Workers workers;
+    for (const SmallScene& small : {smoothCasters(), glint()}) {
+        const Scene scene(small.scene, small.environment, SceneOptions{}, workers);
+        Rendering plain{Method::Path, 128};
+        plain.width = plain.height = 24;
+        Rendering split = plain;
+        split.settings = with({}, "path.split", "on");
+        split.firstSeed = 1000;
+        split.samples = 48;
+        const auto a = renderSeeds(scene, plain, workers), b = renderSeeds(scene, split, workers);
+        for (const char* layer : {"emission", "indirect", ""}) {
+            const Agreement agreement = agreementOf(valuesOf(a, 4, layer), valuesOf(b, 4, layer));
+            EXPECT_TRUE(agreement.holds(sidakLevel(6))) << small.name << " " << layer << ": " << agreement;
+        }
+    }
+}
+
+/// Mean over pixels of the variance over seeds.
+double variance(const std::vector<Image>& images, const std::string& layer) {
+    const SeedValues values = valuesOf(images, 1, layer);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < values.front().size(); ++i) sum += cellOverSeeds(values, i).variance;
+    return sum / static_cast<double>(values.front().size());
+}
+
+TEST(EyeSamples, SplitLampChainsTameGlints) {
+    const Workers workers;
+    const SmallScene small = glint();
+    const Scene scene(small.scene, small.environment, SceneOptions{}, workers);
+    Rendering plain{Method::Path, 16, 16};
+    plain.width = plain.height = 24;
+    Rendering split = plain;
+    split.settings = with({}, "path.split", "on");
+    EXPECT_LT(variance(renderSeeds(scene, split, workers), "emission"), 0.5 * variance(renderSeeds(scene, plain, workers), "emission"));
+}
+
+/// One pixel's noise feeds its later shares: a mean in which noisier pixels counted their samples more would be off.
+TEST(EyeSamples, SharesByNoiseMeanTheSame) {
+    const Workers workers;
+    const SmallScene small = glint();
+    const Scene scene(small.scene, small.environment, SceneOptions{}, workers);
+    Rendering plain{Method::Path, 256};
+    plain.width = plain.height = 24;
+    Rendering adaptive = plain;
+    adaptive.samples = 24;  // few iterations: decisions follow each other closely
+    adaptive.seeds = 24;
+    adaptive.settings = with({}, "path.adaptive", "on");
+    adaptive.firstSeed = 1000;
+    const Agreement agreement = agreementOf(valuesOf(renderSeeds(scene, plain, workers), 4), valuesOf(renderSeeds(scene, adaptive, workers), 4));
+    EXPECT_TRUE(agreement.holds(sidakLevel(1))) << agreement;
+}
+
+RenderRequest adaptiveRequest(std::uint32_t samples) {
+    RenderRequest request;
+    request.width = request.height = 24;
+    request.budget.samples = samples;
+    request.layers = {"samples"};
+    setParameter(request.settings, "path.adaptive", "on");
+    setParameter(request.settings, "photon.global", "3000");
+    setParameter(request.settings, "photon.caustic", "3000");
+    return request;
+}
+
+void expectSameBits(const Image& a, const Image& b) {
+    ASSERT_EQ(a.channels(), b.channels());
+    for (std::size_t i = 0; i < a.pixels(); ++i)
+        for (int c = 0; c < a.channels(); ++c) ASSERT_EQ(a.at(i, c), b.at(i, c)) << "pixel " << i << ", channel " << c;
+}
+
+TEST(EyeSamples, SharesByNoiseKeepTheBits) {
+    const SmallScene small = glint();
+    const Workers one(1), three(3);
+    const Scene scene(small.scene, small.environment, SceneOptions{}, one);
+    const RenderRequest request = adaptiveRequest(20);
+    const Image alone = render(scene, request, one).image;
+    expectSameBits(alone, render(scene, request, three).image);
+    float least = 1e9F, most = 0.0F;
+    const int channel = alone.channel("samples.Y");
+    for (std::size_t i = 0; i < alone.pixels(); ++i) {
+        least = std::min(least, alone.at(i, channel));
+        most = std::max(most, alone.at(i, channel));
+    }
+    EXPECT_LT(least, most);
+
+    RenderRequest broken = adaptiveRequest(9);
+    broken.checkpoint = std::filesystem::temp_directory_path() / ("pellucid-eye-samples-" + std::to_string(::getpid()));
+    (void)render(scene, broken, one);
+    broken.budget.samples = 20;
+    broken.resume = true;
+    const Image resumed = render(scene, broken, one).image;
+    std::filesystem::remove(broken.checkpoint);
+    expectSameBits(alone, resumed);
+}
+
+}  // namespace
+}  // namespace pellucid
