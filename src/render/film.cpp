@@ -43,6 +43,8 @@ void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance
     const double y = static_cast<double>(luminance(total));
     p.square += y * y;
     const double shared = static_cast<double>(radiance.shared), own = y - shared;
+    p.blur += static_cast<double>(radiance.blur);
+    if ((iteration & 1U) != 0) p.blurHalf += static_cast<double>(radiance.blur);
     p.sharedSum += shared;
     p.sharedSquare += shared * shared;
     p.eyeSum += samples * own;
@@ -144,11 +146,14 @@ Rgb Film::mean(const Pixel& p, int layer) const noexcept {
     return value;
 }
 
-double Film::luminanceAt(int x, int y) const noexcept {
-    const Pixel& p = pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+double Film::luminanceOf(const Pixel& p) const noexcept {
     Rgb sum(0.0F);
     for (int l = 0; l < kPathClasses; ++l) sum += mean(p, l);
     return static_cast<double>(luminance(sum));
+}
+
+double Film::luminanceAt(int x, int y) const noexcept {
+    return luminanceOf(pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]);
 }
 
 double Film::meanLuminance() const noexcept {
@@ -210,7 +215,21 @@ Image Film::image(const std::vector<std::string>& layers) const {
     return image;
 }
 
-double Film::relativeError() const noexcept {
+double Film::relativeBlur2() const noexcept {
+    const double odd = samples_ / 2, even = samples_ - samples_ / 2;
+    if (odd < 1.0) return 0.0;
+    double meanValue = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < pixels_.size(); ++i) meanValue += luminanceOf(pixels_[i]);
+    meanValue /= static_cast<double>(pixels_.size());
+    const double floor = std::max(0.01 * meanValue * meanValue, 1e-300);
+    for (const Pixel& p : pixels_) {
+        const double value = luminanceOf(p);
+        sum += p.blurHalf / odd * ((p.blur - p.blurHalf) / even) / (value * value + floor);
+    }
+    return std::max(0.0, sum / static_cast<double>(pixels_.size()));
+}
+
+double Film::relativeNoise2() const noexcept {
     const double odd = samples_ / 2, even = samples_ - samples_ / 2;
     if (odd < 1.0) return 1.0;
     const double oddPasses = splatPasses_ / 2, evenPasses = splatPasses_ - splatPasses_ / 2;
@@ -239,7 +258,7 @@ double Film::relativeError() const noexcept {
         const double d2 = difference[i] * difference[i], v2 = value[i] * value[i] + floor;
         if (v2 > 0.0) sum += d2 / v2;
     }
-    return std::sqrt(sum / static_cast<double>(value.size()));
+    return sum / static_cast<double>(value.size());
 }
 
 NonFinite Film::nonfinite() const noexcept {

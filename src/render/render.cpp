@@ -614,6 +614,8 @@ RenderRecord Renderer::record() const {
     r.samplesPerPixel = samplesPerPixel();
     r.seconds = elapsed();
     r.errorEstimate = film_.relativeError();
+    r.noiseEstimate = std::sqrt(film_.relativeNoise2());
+    r.blurEstimate = std::sqrt(film_.relativeBlur2());
     r.nonfinite = film_.nonfinite();
     r.resolved = resolvedSettings(request_.settings, plan_);
     r.threads = workers_.threads();

@@ -50,15 +50,17 @@ struct KernelSum : WithinRadius {
     glm::vec3 point, normal, shadingNormal;
     const DiffuseLobe& lobe;
     glm::dvec3 sum{0.0};
+    double inner = 0.0;  ///< luminance by the kernel of half the area
 
     KernelSum(const PhotonList& list, const glm::vec3& p, const glm::vec3& ng, const glm::vec3& ns, const DiffuseLobe& l, float r2)
         : WithinRadius{r2}, photons(list), point(p), normal(ng), shadingNormal(ns), lobe(l) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
         const Photon& p = photons[index];
         if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
-        float weight = 1.0F - distance2 / radius2;
-        if (lobe.b != 0.0F) weight *= lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal)));
-        sum += glm::dvec3(p.flux * weight);
+        const float part = distance2 / radius2;
+        const float through = lobe.b != 0.0F ? lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal))) : 1.0F;
+        sum += glm::dvec3(p.flux * ((1.0F - part) * through));
+        inner += static_cast<double>(luminance(p.flux) * (2.0F * std::max(0.0F, 1.0F - 2.0F * part) * through));
         return true;
     }
 };
@@ -80,10 +82,13 @@ CausticMap::~CausticMap() = default;
 CausticMap::CausticMap(CausticMap&&) noexcept = default;
 
 Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                           const DiffuseLobe& lobe, float radius) const noexcept {
+                           const DiffuseLobe& lobe, float radius, float* blur) const noexcept {
     KernelSum result(impl_->photons, point, geometricNormal, shadingNormal, lobe, radius * radius);
     impl_->tree.search(point, result);
-    return Rgb(result.sum * (2.0 / (kPiD * static_cast<double>(radius) * static_cast<double>(radius))));
+    const double perArea = 2.0 / (kPiD * static_cast<double>(radius) * static_cast<double>(radius));
+    const Rgb irradiance(result.sum * perArea);
+    if (blur != nullptr) *blur = 2.0F * (luminance(irradiance) - static_cast<float>(result.inner * perArea));
+    return irradiance;
 }
 
 FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept {

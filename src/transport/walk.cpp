@@ -137,12 +137,14 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         const float radius = glm::clamp(state.ray.kernelFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
         state.causticServed = true;
         if (first != nullptr && state.vertices == 1) first->kernelRadius = radius;
-        const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius);
+        float blur = 0.0F;
+        const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius, &blur);
         PathString path = state.ledger.pathAfter(kDiffuse);
         path.pass(kSpecular);
         const Rgb seen = state.throughput * outgoing * irradiance;
         state.radiance.add(path, seen);
         state.radiance.shared += luminance(seen);
+        state.radiance.blur += luminance(state.throughput * outgoing) * blur;
     }
     if (maps.cache != nullptr) {
         if (const auto cached = maps.cache->lookup(position, normal)) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -59,8 +60,12 @@ public:
 
     /// The mean: R G B, the four layers, and the auxiliary `layers` asked for.
     [[nodiscard]] Image image(const std::vector<std::string>& layers) const;
-    /// Root of the relmse of the mean, estimated from its two halves (noise only, not bias).
-    [[nodiscard]] double relativeError() const noexcept;
+    /// Root of the relmse of the mean: its noise, from its two halves, and the blur of the photons' kernels. What records of
+    /// the cache have in common is not seen.
+    [[nodiscard]] double relativeError() const noexcept { return std::sqrt(relativeNoise2() + relativeBlur2()); }
+    [[nodiscard]] double relativeNoise2() const noexcept;
+    /// Of the mean, without the noise of its own estimate: the product of that from odd and from even iterations.
+    [[nodiscard]] double relativeBlur2() const noexcept;
     /// Of the mean so far, all classes.
     [[nodiscard]] double luminanceAt(int x, int y) const noexcept;
     [[nodiscard]] double meanLuminance() const noexcept;
@@ -80,6 +85,7 @@ private:
         double square = 0.0;          ///< of the luminance of an iteration's mean
         double eyeSum = 0.0, eyeSquare = 0.0;  ///< of the luminance without what photons gave, weighed by the number of samples
         double sharedSum = 0.0, sharedSquare = 0.0;  ///< of the luminance that photons gave
+        double blur = 0.0, blurHalf = 0.0;
         std::uint64_t rays = 0;
         std::uint32_t taken = 0;
         std::uint8_t share = 1;
@@ -90,6 +96,7 @@ private:
         std::uint32_t nonfinite = 0, firstNonfinite = 0;
     };
     [[nodiscard]] Rgb mean(const Pixel& p, int layer) const noexcept;
+    [[nodiscard]] double luminanceOf(const Pixel& p) const noexcept;
     [[nodiscard]] double variance(const Pixel& p) const noexcept;
     [[nodiscard]] std::size_t savedSize() const noexcept;
     [[nodiscard]] double stringMean(std::size_t slot, std::size_t pixel, std::size_t channel) const noexcept;

@@ -85,6 +85,7 @@ struct RenderRecord {
     std::uint32_t iterations = 0, samplesPerPixel = 0;
     double seconds = 0.0;
     double errorEstimate = 0.0;             ///< relative, root of the estimated relmse
+    double noiseEstimate = 0.0, blurEstimate = 0.0;  ///< its parts, added in squares: noise, and bias of the photons' kernels
     NonFinite nonfinite;
     Settings resolved;
     int threads = 0;
