@@ -83,6 +83,8 @@ PixelNoise Film::noise(std::size_t pixel) const noexcept {
     noise.photonVariance = static_cast<float>(std::max(0.0, p.sharedSquare - p.sharedSum * p.sharedSum / std::max(1.0, n)) / free);
     noise.luminance = static_cast<float>(p.eyeSum / taken + p.sharedSum / std::max(1.0, n));
     noise.rays = static_cast<float>(static_cast<double>(p.rays) / taken);
+    const double odd = std::max<std::uint32_t>(1, samples_ / 2), even = std::max<std::uint32_t>(1, samples_ - samples_ / 2);
+    noise.blur2 = static_cast<float>(p.blurHalf / odd * ((p.blur - p.blurHalf) / even));
     noise.inside = p.taken > 0;
     return noise;
 }

@@ -47,6 +47,8 @@ constexpr float kMaxCausticRadius = 0.05F;  ///< of the scene's radius
 constexpr double kDefaultError = 0.05;
 /// Iterations before pixels are told apart by their noise.
 constexpr std::uint32_t kUniformIterations = 4;
+/// Iterations before the radii of kernels are corrected by noise and bias.
+constexpr std::uint32_t kCorrectRadiiAfter = 8;
 /// Time of a ray of the caustic photons, with what is made of them, in units of an eye ray's; as measured.
 constexpr double kPhotonRayTime = 1.75;
 /// Of a budget, for one iteration: else it would be overrun.
@@ -202,6 +204,7 @@ private:
     [[nodiscard]] bool generationDue() const;
     void renewGeneration();
     void causticPass();
+    void fitRadii();
     void lightPass();
     void eyePass();
     void renewShares();
@@ -419,10 +422,23 @@ void Renderer::causticPass() {
     context_.maps.caustic = causticMap_.get();
     // r^2_{i+1} = r^2_i (i + alpha) / (i + 1) [KnausZwicker2011]
     if (iteration_ > 0) radiusScale_ *= (iteration_ + static_cast<double>(plan_.alpha)) / (iteration_ + 1.0);
-    if (kernelRadii_ && learningIteration()) kernelRadii_->learn(*causticMap_, survey_.points, workers_);
+    if (kernelRadii_) fitRadii();
     learn(std::move(pass.useful));
     context_.maps.causticRadiusMin = 4e-6F;
     context_.maps.causticRadiusMax = kMaxCausticRadius * scene_.radius();
+}
+
+/// Radii learn from the photons of iterations 0, 1, 3, 7, ... and are corrected after 8, 16, 32, ... by what the image shows.
+void Renderer::fitRadii() {
+    if (learningIteration()) kernelRadii_->learn(*causticMap_, survey_.points, workers_);
+    const std::uint32_t n = film_.samples();
+    if (n < kCorrectRadiiAfter || (n & (n - 1)) != 0) return;
+    const double floor = kLeastLuminance * film_.meanLuminance();
+    kernelRadii_->correct(n, [&](int x, int y) {
+        const PixelNoise noise = film_.noise(pixelIndex(x, y));
+        const double scale = static_cast<double>(noise.luminance) * static_cast<double>(noise.luminance) + floor * floor;
+        return KernelRadii::Shown{static_cast<double>(noise.photonVariance) / scale, static_cast<double>(noise.blur2) / scale};
+    }, workers_);
 }
 
 void Renderer::lightPass() {

@@ -12,6 +12,11 @@ namespace {
 constexpr float kGrowth = 1.4F;
 /// Standard deviations by which disc and ring may differ (p about 0.07 a test: to see an edge matters more than to see one too many).
 constexpr double kContradiction = 1.8;
+/// A correction looks at so many blocks to each side, and changes a radius by no more than this.
+constexpr int kNeighbours = 2;
+constexpr double kLeastFactor = 0.6, kMostFactor = 1.25;
+/// r over the root mean square of the radii so far, when r^2 falls as n^(-1/3).
+constexpr double kRadiusSoFar = 1.2247;
 
 [[nodiscard]] double equalPhotons(const FluxSums& s) noexcept { return s.squares > 0.0 ? s.sum * s.sum / s.squares : 0.0; }
 
@@ -41,7 +46,7 @@ float chooseKernelRadius(const CausticMap& map, const GatherPoint& point, const 
 
 KernelRadii::KernelRadii(int width, int height, const KernelRadiusOptions& options)
     : width_(width), height_(height), blocksX_((width + kBlock - 1) / kBlock), blocksY_((height + kBlock - 1) / kBlock), options_(options),
-      logRadius_(static_cast<std::size_t>(blocksX_) * static_cast<std::size_t>(blocksY_), 0.0F), radii_(logRadius_.size(), options.smallest) {}
+      logRadius_(static_cast<std::size_t>(blocksX_) * static_cast<std::size_t>(blocksY_), 0.0F), logFactor_(logRadius_), radii_(logRadius_.size(), options.smallest) {}
 
 void KernelRadii::learn(const CausticMap& map, const std::vector<GatherPoint>& points, const Workers& workers) {
     ++passes_;
@@ -56,31 +61,53 @@ void KernelRadii::learn(const CausticMap& map, const std::vector<GatherPoint>& p
     smooth(workers);
 }
 
+void KernelRadii::correctBlocks(std::uint32_t iterations, const std::vector<Shown>& blocks, const Workers& workers) {
+    workers.forEach(blocks.size(), 256, [&](std::size_t block) {
+        const int bx = static_cast<int>(block) % blocksX_, by = static_cast<int>(block) / blocksX_;
+        Shown near;
+        for (int y = std::max(0, by - kNeighbours); y <= std::min(blocksY_ - 1, by + kNeighbours); ++y)
+            for (int x = std::max(0, bx - kNeighbours); x <= std::min(blocksX_ - 1, bx + kNeighbours); ++x) {
+                near.variance += blocks[blockAt(x, y)].variance;
+                near.bias2 += blocks[blockAt(x, y)].bias2;
+            }
+        if (!(near.variance > 0.0)) return;
+        // Good until as many iterations again have been.
+        const double n = 2.0 * iterations, ratio = near.variance / (2.0 * n * std::max(near.bias2, 1e-4 * near.variance / n));
+        const double factor = std::clamp(kRadiusSoFar * std::pow(ratio, 1.0 / 6.0), kLeastFactor, kMostFactor);
+        const double bounded = std::clamp(std::exp(static_cast<double>(logFactor_[block])) * factor, 0.25, 2.0);
+        logFactor_[block] = static_cast<float>(std::log(bounded));
+    });
+    smooth(workers);
+}
+
 /// The median of nine neighbours takes out what single photons did.
 void KernelRadii::smooth(const Workers& workers) {
-    const auto blockOf = [this](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(x); };
     workers.forEach(radii_.size(), 256, [&](std::size_t block) {
         const int bx = static_cast<int>(block) % blocksX_, by = static_cast<int>(block) / blocksX_;
         std::array<float, 9> near{};
         std::size_t n = 0;
         for (int y = std::max(0, by - 1); y <= std::min(blocksY_ - 1, by + 1); ++y)
-            for (int x = std::max(0, bx - 1); x <= std::min(blocksX_ - 1, bx + 1); ++x) near[n++] = logRadius_[blockOf(x, y)];
+            for (int x = std::max(0, bx - 1); x <= std::min(blocksX_ - 1, bx + 1); ++x) near[n++] = logRadius_[blockAt(x, y)] + logFactor_[blockAt(x, y)];
         std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(n / 2), near.begin() + static_cast<std::ptrdiff_t>(n));
         radii_[block] = std::exp(near[n / 2]);
     });
 }
 
 std::vector<char> KernelRadii::save() const {
-    std::vector<char> bytes(sizeof passes_ + logRadius_.size() * sizeof(float));
+    const std::size_t size = logRadius_.size() * sizeof(float);
+    std::vector<char> bytes(sizeof passes_ + 2 * size);
     std::memcpy(bytes.data(), &passes_, sizeof passes_);
-    std::memcpy(bytes.data() + sizeof passes_, logRadius_.data(), logRadius_.size() * sizeof(float));
+    std::memcpy(bytes.data() + sizeof passes_, logRadius_.data(), size);
+    std::memcpy(bytes.data() + sizeof passes_ + size, logFactor_.data(), size);
     return bytes;
 }
 
 bool KernelRadii::restore(const std::vector<char>& bytes, const Workers& workers) {
-    if (bytes.size() != sizeof passes_ + logRadius_.size() * sizeof(float)) return false;
+    const std::size_t size = logRadius_.size() * sizeof(float);
+    if (bytes.size() != sizeof passes_ + 2 * size) return false;
     std::memcpy(&passes_, bytes.data(), sizeof passes_);
-    std::memcpy(logRadius_.data(), bytes.data() + sizeof passes_, logRadius_.size() * sizeof(float));
+    std::memcpy(logRadius_.data(), bytes.data() + sizeof passes_, size);
+    std::memcpy(logFactor_.data(), bytes.data() + sizeof passes_ + size, size);
     if (passes_ > 0) smooth(workers);
     return true;
 }

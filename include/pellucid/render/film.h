@@ -21,6 +21,7 @@ namespace pellucid {
 struct PixelNoise {
     float eyeVariance = 0.0F;         ///< of the luminance of an eye sample
     float photonVariance = 0.0F;      ///< of the luminance that an iteration's photons give
+    float blur2 = 0.0F;               ///< square of the kernels' bias, free of its own noise: may be negative
     float luminance = 0.0F;
     float rays = 1.0F;                ///< of an eye sample
     bool inside = true;               ///< false: not rendered

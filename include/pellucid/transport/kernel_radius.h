@@ -27,10 +27,17 @@ public:
 
     /// Adds what `map` says at the survey's points.
     void learn(const CausticMap& map, const std::vector<GatherPoint>& points, const Workers& workers);
+    /// Corrects them by what the image has shown, with b the bias of the kernels and V the variance of an iteration's
+    /// photons: the error V / n + b^2 after n iterations, V ~ 1 / r^2 and b ~ r^2, is least where V / n = 2 b^2.
+    /// [KaplanyanDachsbacher2013] `shown(x, y)` gives V and b^2.
+    struct Shown {
+        double variance = 0.0, bias2 = 0.0;
+    };
+    template <class Function>
+    void correct(std::uint32_t iterations, const Function& shown, const Workers& workers);
+
     /// In footprints.
-    [[nodiscard]] float at(int x, int y) const noexcept {
-        return radii_[static_cast<std::size_t>(y / kBlock) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(x / kBlock)];
-    }
+    [[nodiscard]] float at(int x, int y) const noexcept { return radii_[blockAt(x / kBlock, y / kBlock)]; }
 
     /// For checkpoints. restore: false when the bytes do not fit.
     [[nodiscard]] std::vector<char> save() const;
@@ -38,11 +45,29 @@ public:
 
 private:
     void smooth(const Workers& workers);
+    void correctBlocks(std::uint32_t iterations, const std::vector<Shown>& blocks, const Workers& workers);
+    [[nodiscard]] std::size_t blockAt(int bx, int by) const noexcept {
+        return static_cast<std::size_t>(by) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(bx);
+    }
     static constexpr int kBlock = 2;     ///< pixels that share a radius, a side
     int width_, height_, blocksX_, blocksY_, passes_ = 0;
     KernelRadiusOptions options_;
     std::vector<float> logRadius_;       ///< by block: the newest pass counts half, as the guide gets better
+    std::vector<float> logFactor_;       ///< by block: what the image's own noise and bias have corrected
     std::vector<float> radii_;           ///< by block; smoothed
 };
+
+template <class Function>
+void KernelRadii::correct(std::uint32_t iterations, const Function& shown, const Workers& workers) {
+    std::vector<Shown> blocks(logRadius_.size());
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) {
+            const Shown s = shown(x, y);
+            Shown& block = blocks[blockAt(x / kBlock, y / kBlock)];
+            block.variance += s.variance;
+            block.bias2 += s.bias2;
+        }
+    correctBlocks(iterations, blocks, workers);
+}
 
 }  // namespace pellucid
