@@ -12,7 +12,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr char kMagic[] = "pellucid checkpoint 2\n";
+constexpr char kMagic[] = "pellucid checkpoint 3\n";
 
 [[nodiscard]] std::uint64_t checksum(const std::string& bytes) noexcept {
     std::uint64_t sum = bytes.size();
@@ -59,7 +59,8 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     put(body, state.generation);
     put(body, state.raysOfGeneration);
     put(body, state.raysSince);
-    for (const std::vector<char>* block : {&state.film, &state.training, &state.radii}) {
+    put(body, state.causticsTried);
+    for (const std::vector<char>* block : {&state.film, &state.training, &state.radii, &state.trial}) {
         put(body, static_cast<std::uint64_t>(block->size()));
         body.append(block->begin(), block->end());
     }
@@ -98,7 +99,8 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     state.generation = reader.get<std::uint32_t>();
     state.raysOfGeneration = reader.get<double>();
     state.raysSince = reader.get<double>();
-    for (std::vector<char>* block : {&state.film, &state.training, &state.radii}) {
+    state.causticsTried = reader.get<std::uint8_t>();
+    for (std::vector<char>* block : {&state.film, &state.training, &state.radii, &state.trial}) {
         const std::string bytes = reader.text(reader.get<std::uint64_t>());
         block->assign(bytes.begin(), bytes.end());
     }

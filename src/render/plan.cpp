@@ -201,6 +201,11 @@ Survey survey(const TransportContext& context, const Camera& camera, std::uint64
     return s;
 }
 
+void Plan::revise(const std::string& name, std::string choice, std::string reason) {
+    for (Decision& d : decisions)
+        if (d.name == name) d.choice = std::move(choice), d.reason = std::move(reason);
+}
+
 GenerationSize Plan::generation(std::uint32_t number) const noexcept {
     constexpr double kPhotonGrowth = 1.5, kErrorPower = 0.25, kMostPhotons = 1e7;
     constexpr std::uint32_t kRayDoublings = 2;
@@ -234,6 +239,7 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     } else {
         decide(plan, "photons, cache", "off", "path tracing needs none");
     }
+    plan.causticChains = plan.cache && !plan.causticMap && (scene.lobeKinds() & kSpecular) != kNoLobe && isOff(request.settings.causticMap);
     planEyePaths(plan, scene, request);
     findBlindSpots(plan, scene, request);
     const Budget& b = request.budget;

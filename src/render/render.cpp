@@ -18,6 +18,7 @@
 #include <pellucid/transport/texel_irradiance.h>
 
 #include "cache_builder.h"
+#include "caustic_trial.h"
 #include "checkpoint.h"
 #include "endless.h"
 #include "sample_shares.h"
@@ -30,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kTile = 16;
 constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, kLightPass = 3ULL << 40U, kCachePass = 4ULL << 40U,
-                        kBidirectionalPass = 5ULL << 40U;
+                        kBidirectionalPass = 5ULL << 40U, kTrialPass = 6ULL << 40U;
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
 constexpr double kGenerationShare = 1.5;
 /// Where the global map is evaluated for gather rays.
@@ -47,6 +48,9 @@ constexpr float kMaxCausticRadius = 0.05F;  ///< of the scene's radius
 constexpr double kDefaultError = 0.05;
 /// Iterations before pixels are told apart by their noise.
 constexpr std::uint32_t kUniformIterations = 4;
+/// Lamps that fill less of what a surface sees are never left to chance; a render of few samples has no time to try.
+constexpr double kLeastLampShare = 2e-3;
+constexpr std::uint32_t kLeastSamplesToTry = 16;
 /// Iterations before the radii of kernels are corrected by noise and bias.
 constexpr std::uint32_t kCorrectRadiiAfter = 8;
 /// Time of a ray of the caustic photons, with what is made of them, in units of an eye ray's; as measured.
@@ -144,7 +148,7 @@ public:
         // Without maps a sample depends on nothing that was before it.
         if (!plan_.causticMap && !plan_.cache && !plan_.adaptive) film_.countSamples(sample);
         else
-            for (; iteration_ < sample && !progress_.stopAsked(); ++iteration_) {
+            for (; (trial_ || film_.samples() < sample) && !progress_.stopAsked(); ++iteration_) {
                 iterate();
                 tell("iterations before the sample");
             }
@@ -205,6 +209,9 @@ private:
     void renewGeneration();
     void causticPass();
     void fitRadii();
+    void tryChance();
+    void leaveCausticsToChance();
+    [[nodiscard]] std::uint64_t trialPass();
     void lightPass();
     void eyePass();
     void renewShares();
@@ -259,6 +266,9 @@ private:
     Plan plan_;
     std::unique_ptr<EmissionGuide> guide_;
     std::unique_ptr<KernelRadii> kernelRadii_;  ///< none: one radius for all pixels
+    std::unique_ptr<CausticTrial> trial_;       ///< null: none, or decided
+    std::uint8_t causticsTried_ = 0;            ///< as in CheckpointState
+    std::uint64_t trialRays_ = 0;
     std::unique_ptr<CausticMap> causticMap_;
     std::unique_ptr<RadianceMap> globalMap_;
     std::unique_ptr<TexelIrradiance> texels_;
@@ -292,6 +302,12 @@ void Renderer::prepare() {
     if (plan_.texelWidth > 0.0F) texels_ = std::make_unique<TexelIrradiance>(scene_, camera_, plan_.texelWidth);
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
     context_.options.splitLampChains = plan_.splitLampChains;
+    context_.maps.causticChains = plan_.causticChains;
+    const bool fewSamples = request_.budget.samples && *request_.budget.samples < kLeastSamplesToTry;
+    if (plan_.causticMap && request_.settings.causticMap == "auto" && !fewSamples && lampShare(scene_, survey_) > kLeastLampShare) {
+        trial_ = std::make_unique<CausticTrial>(camera_.width(), camera_.height());
+        causticsTried_ = 1;
+    }
     if (!request_.windows.empty()) keepWindows();
 }
 
@@ -326,6 +342,64 @@ bool Renderer::generationDue() const {
     return !request_.budget.seconds || elapsed() + (1.0 + kGenerationShare) * next <= *request_.budget.seconds;
 }
 
+/// A sample of every trial pixel with the caustics by S chains. Returns its rays.
+std::uint64_t Renderer::trialPass() {
+    TransportContext chance = context_;
+    chance.maps.caustic = nullptr;
+    chance.maps.causticChains = plan_.cache;
+    std::vector<std::uint64_t> rays(tiles(), 0);
+    forTiles([&](std::size_t tile, const auto& forPixels) {
+        Walk walk(chance);
+        forPixels([&](std::size_t pixel, const glm::vec2& corner) {
+            const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
+            if (!CausticTrial::takes(x, y) || (!inWindow_.empty() && !inWindow_[pixel])) return;
+            Sampler sampler(hashCombine(request_.seed, kTrialPass), pixel, iteration_);
+            const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
+            const CameraRay ray = camera_.ray(corner + jitter, lens);
+            FirstHit first;
+            const LayeredRadiance radiance = walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), 1.0F}, sampler, &first);
+            if (isFinite(radiance.total())) trial_->add(x, y, static_cast<double>(luminance(radiance.total())), static_cast<double>(radiance.chains));
+        });
+        rays[tile] = walk.rays();
+    });
+    return std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+}
+
+/// The first iterations both ways; then the better one goes on.
+void Renderer::tryChance() {
+    {
+        const StageTimer timer(eyeStage_, windowScale_);
+        const std::uint64_t rays = trialPass();
+        trialRays_ += rays;
+        eyeStage_.rays += ofWholeImage(rays);
+    }
+    if (film_.samples() < CausticTrial::kIterations) return;
+    constexpr double n = CausticTrial::kIterations;
+    TrialCosts costs;
+    costs.photonRays = kPhotonRayTime * static_cast<double>(causticStage_.rays) / (n * windowScale_);
+    costs.eyeRays = static_cast<double>(film_.rays()) / n;
+    costs.chanceRays = 4.0 * static_cast<double>(trialRays_) / n;
+    const TrialVerdict verdict = trial_->judge(film_, costs);
+    trial_.reset();
+    causticsTried_ = verdict.byChance ? 3 : 2;
+    if (verdict.byChance) leaveCausticsToChance();
+    plan_.revise("caustic map", verdict.byChance ? "off" : "on", verdict.reason);
+}
+
+/// What the map has shown so far is noisier than what comes: the image starts again.
+void Renderer::leaveCausticsToChance() {
+    plan_.causticMap = false;
+    plan_.causticChains = plan_.cache;
+    context_.maps.caustic = nullptr;
+    context_.maps.causticChains = plan_.causticChains;
+    causticMap_.reset();
+    kernelRadii_.reset();
+    guide_.reset();
+    film_ = Film(camera_.width(), camera_.height());
+    const auto& layers = request_.layers;
+    if (std::find(layers.begin(), layers.end(), "classes") != layers.end()) film_.keepStrings(scene_.lobeKinds());
+}
+
 /// What the eye paths of this iteration read.
 void Renderer::makeMaps() {
     if (generationDue()) renewGeneration();
@@ -339,6 +413,7 @@ void Renderer::iterate() {
     if (bidirectional()) bidirectionalPass();
     else if (request_.method != Method::Light) eyePass();
     else film_.countSamples(1);
+    if (trial_) tryChance();
     secondsOfIteration_ = elapsed() - began - (globalStage_.seconds + cacheStage_.seconds - once);
 }
 
@@ -670,7 +745,8 @@ CheckpointKey Renderer::checkpointKey() const {
 }
 
 void Renderer::save() const {
-    CheckpointState state{iteration_, generation_, raysOfGeneration_, raysSince_, film_.save(), {}, {}};
+    CheckpointState state{iteration_, generation_, raysOfGeneration_, raysSince_, film_.save(), {}, {}, causticsTried_, {}};
+    if (trial_) state.trial = trial_->save();
     state.training.resize(plan_.training.size() * sizeof(UsefulEmission));
     if (!plan_.training.empty()) std::memcpy(state.training.data(), plan_.training.data(), state.training.size());
     if (kernelRadii_) state.radii = kernelRadii_->save();
@@ -689,7 +765,14 @@ void Renderer::saveWhenDue(bool now) {
 void Renderer::resume() {
     const auto state = readCheckpoint(request_.checkpoint, checkpointKey());
     if (!state) return;
-    if (!film_.restore(state->film) || state->training.size() % sizeof(UsefulEmission) != 0 ||
+    causticsTried_ = state->causticsTried;
+    const bool trialFits = causticsTried_ != 1 || (trial_ && trial_->restore(state->trial));
+    if (causticsTried_ != 1) trial_.reset();
+    if (causticsTried_ == 3) {
+        leaveCausticsToChance();
+        plan_.revise("caustic map", "off", "paths that meet the lamps were better in the first iterations");
+    }
+    if (!trialFits || !film_.restore(state->film) || state->training.size() % sizeof(UsefulEmission) != 0 ||
         (kernelRadii_ && !kernelRadii_->restore(state->radii, workers_)))
         throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", request_.checkpoint.string(), "delete it or render without --resume");
     plan_.training.resize(state->training.size() / sizeof(UsefulEmission));

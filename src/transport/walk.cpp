@@ -49,8 +49,15 @@ struct Walk::State {
     bool gathering = false;          ///< behind the first D vertex: the global map may answer
     bool deltaChain = true;          ///< from the eye: no other lobe so far
     bool lampsFollowed = false;      ///< over that chain, by LampChains
+    bool chainsNext = false;         ///< at this D vertex: the cache has served all but the caustics
+    bool onlyChains = false;         ///< behind it: S lobes alone go on
     bool causticServed = false;      ///< at this D vertex: what comes over S alone is counted
 
+    /// Of a lamp that was met.
+    void addLamp(const Rgb& light) {
+        radiance.add(ledger.path(), light);
+        if (onlyChains && !chainEmpty) radiance.chains += luminance(light);
+    }
     /// Whether a lamp that is met now belongs to path tracing.
     [[nodiscard]] bool lampCounts(const LeftClasses& left) const noexcept {
         if (left.has(ledger.path()) || (deltaChain && lampsFollowed)) return false;
@@ -92,7 +99,7 @@ void Walk::addEscaped(State& state) const noexcept {
     float weight = 1.0F;
     if (state.lampSampled)
         weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
-    state.radiance.add(state.ledger.path(), state.throughput * environment->radiance(state.ray.ray.direction) * weight);
+    state.addLamp(state.throughput * environment->radiance(state.ray.ray.direction) * weight);
 }
 
 void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
@@ -104,7 +111,7 @@ void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
         weight = hitWeight(state.pdfSolidAngle,
                            context_.scene.lights().pdfTriangle(state.lightPoint, state.lightNormal, hit.point.geometry, hit.point.primitive,
                                                                state.ray.ray.direction, hit.distance));
-    state.radiance.add(state.ledger.path(), state.throughput * emitted * weight);
+    state.addLamp(state.throughput * emitted * weight);
 }
 
 /// Hands the D lobe to the maps. Returns kDiffuse when path tracing has to carry it on.
@@ -124,7 +131,7 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
                 return kNoLobe;
             }
             // Near a corner all but the caustics, which path tracing hardly finds, goes on.
-            if (found && maps.caustic != nullptr) {
+            if (found && maps.causticsApart()) {
                 PathString path = state.ledger.pathAfter(kDiffuse);
                 path.pass(kSpecular);
                 state.radiance.add(path, state.throughput * outgoing * found->caustic);
@@ -149,7 +156,8 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
     if (maps.cache != nullptr) {
         if (const auto cached = maps.cache->lookup(position, normal)) {
             state.radiance.add(state.ledger.pathAfter(kDiffuse).open(), state.throughput * outgoing * cached->through(lobe));
-            return kNoLobe;
+            state.chainsNext = maps.caustic == nullptr && maps.causticChains;
+            return state.chainsNext ? kDiffuse : kNoLobe;
         }
         ++cacheMisses_;  // gathers once: the walk simply goes on
     }
@@ -190,8 +198,11 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     arriving *= medium::transmittance(
         medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, through), light->distance);
     for (std::size_t i = 0; i < 3; ++i)
-        if (!isBlack(sum[i]))
-            state.radiance.add(state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)), state.throughput * arriving * sum[i]);
+        if (!isBlack(sum[i])) {
+            const Rgb seen = state.throughput * arriving * sum[i];
+            state.radiance.add(state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)), seen);
+            if (state.onlyChains) state.radiance.chains += luminance(seen);
+        }
 }
 
 /// Samples the next direction among `sampled` lobes, with roulette. False: the walk ends.
@@ -230,6 +241,7 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
         state.chainEmpty = state.chainSpecular = true;
         state.gathering = true;
         state.skipDirect = false;
+        state.onlyChains = state.chainsNext;
     } else {
         state.chainEmpty = false;
         state.chainSpecular = state.chainSpecular && casts;
@@ -281,7 +293,7 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
         first->normal = bsdf.shadingNormal();
         first->depth = hit->distance;
     }
-    const LobeKinds kinds = bsdf.kinds();
+    const LobeKinds kinds = state.onlyChains ? bsdf.kinds() & kSpecular : bsdf.kinds();
     if (kinds == kNoLobe || (context_.options.maxDepth > 0 && state.vertices > context_.options.maxDepth)) return false;
     if (context_.options.splitLampChains && state.deltaChain && !state.gathering && !state.lampsFollowed && LampChains::splits(bsdf, wo)) {
         state.lampsFollowed = true;
@@ -290,7 +302,7 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     }
     LobeKinds sampled = kinds & (kSpecular | kGlossy);
     LobeKinds direct = kinds;
-    state.causticServed = false;
+    state.causticServed = state.chainsNext = false;
     sampler.setDimension(dimension + kCorner);
     if ((kinds & kDiffuse) != kNoLobe) {
         const LobeKinds carried = serveDiffuse(state, vertex, sampler, first);
@@ -349,7 +361,7 @@ Rgb Walk::gather(const WalkRay& ray, Sampler& sampler, float& distance) noexcept
     state.ray = ray;
     state.gathering = true;
     state.skipDirect = true;
-    state.behind = context_.maps.caustic != nullptr ? Behind::CausticMapped : Behind::PathTraced;
+    state.behind = context_.maps.causticsApart() ? Behind::CausticMapped : Behind::PathTraced;
     state.ledger.pass(kDiffuse);
     run(state, sampler, nullptr, &distance);
     return state.radiance.total();

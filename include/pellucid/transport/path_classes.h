@@ -8,7 +8,9 @@
 ///   no x                        E (S|G)* L                path tracing (next-event estimation with MIS at every G)
 ///   light reaches x at once     E (S|G)* D L              next-event estimation at x
 ///   light comes over S only     E (S|G)* D S+ L           the caustic map, which holds L S+ D photons only; a path from x
-///                                                         that meets a lamp over S alone adds 0
+///                                                         that meets a lamp over S alone adds 0. Where lamps are large the
+///                                                         plan may leave the map out: then beside the cache each eye path
+///                                                         goes on from x over S lobes alone, and carries just this class
 ///   over S and at least one G   E (S|G)* D S* G (S|G)* L  path tracing inside the gather
 ///   over another D vertex y     E (S|G)* D (S|G)* D ...   irradiance cache / gather; at y the global map (all photons)
 /// A pass that the plan leaves out hands its class back to path tracing, never to nothing.
@@ -101,6 +103,7 @@ using StringSums = std::vector<std::pair<PathString, Rgb>>;
 struct LayeredRadiance {
     std::array<Rgb, kPathClasses> layer{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};
     float shared = 0.0F;            ///< luminance of what photons gave, which other samples of the iteration see too
+    float chains = 0.0F;            ///< luminance of caustics that S chains behind a cached D vertex brought
     float blur = 0.0F;              ///< luminance: estimated bias of the kernels in it
     StringSums* strings = nullptr;  ///< not owned; receives the same radiance by string
 
@@ -113,6 +116,7 @@ struct LayeredRadiance {
     void addShare(const LayeredRadiance& other, float weight) {
         for (std::size_t l = 0; l < layer.size(); ++l) layer[l] += other.layer[l] * weight;
         shared += other.shared * weight;
+        chains += other.chains * weight;
         blur += other.blur * weight;
         if (strings != nullptr && other.strings != nullptr)
             for (const auto& [path, radiance] : *other.strings) strings->emplace_back(path, radiance * weight);

@@ -20,10 +20,14 @@ class IrradianceCache;
 /// Null: the pass is left out and its class is path traced.
 struct Maps {
     const CausticMap* caustic = nullptr;
+    bool causticChains = false;       ///< no caustic map, but caustics stay out of the cache: eye paths follow S chains to the lamps
     const RadianceMap* global = nullptr;
     const IrradianceCache* cache = nullptr;
     float causticRadiusMin = 0.0F;    ///< in scene units
     float causticRadiusMax = 1.0F;
+
+    /// Whether light over S alone is kept out of cache and gather.
+    [[nodiscard]] bool causticsApart() const noexcept { return caustic != nullptr || causticChains; }
 };
 
 /// How light reaches a vertex: by chance when a direction meets a lamp, by next-event estimation where that can find it,
