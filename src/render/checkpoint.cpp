@@ -59,8 +59,8 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     put(body, state.generation);
     put(body, state.raysOfGeneration);
     put(body, state.raysSince);
-    put(body, state.causticsTried);
-    for (const std::vector<char>* block : {&state.film, &state.training, &state.radii, &state.trial}) {
+    put(body, state.causticPaths);
+    for (const std::vector<char>* block : {&state.film, &state.training, &state.radii}) {
         put(body, static_cast<std::uint64_t>(block->size()));
         body.append(block->begin(), block->end());
     }
@@ -99,8 +99,8 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     state.generation = reader.get<std::uint32_t>();
     state.raysOfGeneration = reader.get<double>();
     state.raysSince = reader.get<double>();
-    state.causticsTried = reader.get<std::uint8_t>();
-    for (std::vector<char>* block : {&state.film, &state.training, &state.radii, &state.trial}) {
+    state.causticPaths = reader.get<std::uint32_t>();
+    for (std::vector<char>* block : {&state.film, &state.training, &state.radii}) {
         const std::string bytes = reader.text(reader.get<std::uint64_t>());
         block->assign(bytes.begin(), bytes.end());
     }

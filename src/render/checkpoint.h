@@ -19,8 +19,7 @@ struct CheckpointState {
     double raysOfGeneration = 0.0, raysSince = 0.0;
     std::vector<char> film;
     std::vector<char> training, radii;  ///< what guide and kernel radii have learnt
-    std::uint8_t causticsTried = 0;     ///< 1: the caustic trial goes on; 2: the map has won; 3: chance has
-    std::vector<char> trial;
+    std::uint32_t causticPaths = 0;     ///< of an iteration
 };
 
 void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key, const CheckpointState& state);

@@ -172,6 +172,16 @@ double Film::meanLuminance() const noexcept {
     return sum / static_cast<double>(std::max<std::size_t>(1, pixels_.size()));
 }
 
+double Film::indirectShare() const noexcept {
+    const double floor = 0.1 * meanLuminance();
+    double sum = 0.0;
+    for (const Pixel& p : pixels_) {
+        const double value = luminanceOf(p) + floor;
+        if (value > 0.0) sum += static_cast<double>(luminance(mean(p, static_cast<int>(PathClass::Indirect)))) / value;
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(1, pixels_.size()));
+}
+
 /// Of the pixel's mean luminance: sample variance over the number of samples, of the eye's samples and of the passes'
 /// splats, which are taken as independent of each other.
 double Film::variance(const Pixel& p) const noexcept {

@@ -36,6 +36,7 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
                                         const Workers& workers) {
     std::vector<UsefulEmission> useful;
     std::uint32_t paths = kPilotPaths;
+    double unguided = 0.0;
     for (std::uint64_t attempt = 0; attempt < kPilotRounds; ++attempt) {
         const EmissionGuide guide(scene.lights(), useful);
         CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible, workers);
@@ -45,11 +46,13 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
         const auto before = static_cast<double>(useful.size()), now = static_cast<double>(pass.useful.size());
         useful = std::move(pass.useful);
         plan.usefulShare = now / paths;
+        if (!(unguided > 0.0)) unguided = plan.usefulShare;
         if (now == 0.0 && attempt > 0) break;
         if (now == 0.0) paths = kPilotPaths * kPilotRetryFactor;
         else if (now >= kEnoughUseful && now < 1.3 * before) break;
     }
     plan.training = std::move(useful);
+    plan.guideGain = unguided > 0.0 && !isOff(request.settings.guiding) ? std::max(1.0, plan.usefulShare / unguided) : 1.0;
     return plan.training.size();
 }
 
@@ -201,11 +204,6 @@ Survey survey(const TransportContext& context, const Camera& camera, std::uint64
     return s;
 }
 
-void Plan::revise(const std::string& name, std::string choice, std::string reason) {
-    for (Decision& d : decisions)
-        if (d.name == name) d.choice = std::move(choice), d.reason = std::move(reason);
-}
-
 GenerationSize Plan::generation(std::uint32_t number) const noexcept {
     constexpr double kPhotonGrowth = 1.5, kErrorPower = 0.25, kMostPhotons = 1e7;
     constexpr std::uint32_t kRayDoublings = 2;
@@ -239,7 +237,8 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     } else {
         decide(plan, "photons, cache", "off", "path tracing needs none");
     }
-    plan.causticChains = plan.cache && !plan.causticMap && (scene.lobeKinds() & kSpecular) != kNoLobe && isOff(request.settings.causticMap);
+    const bool casts = (scene.lobeKinds() & kSpecular) != kNoLobe;
+    plan.causticChains = plan.cache && casts && (plan.causticMap ? isOn(request.settings.chance) : isOff(request.settings.causticMap));
     planEyePaths(plan, scene, request);
     findBlindSpots(plan, scene, request);
     const Budget& b = request.budget;

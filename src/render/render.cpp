@@ -18,7 +18,6 @@
 #include <pellucid/transport/texel_irradiance.h>
 
 #include "cache_builder.h"
-#include "caustic_trial.h"
 #include "checkpoint.h"
 #include "endless.h"
 #include "sample_shares.h"
@@ -31,9 +30,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kTile = 16;
 constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, kLightPass = 3ULL << 40U, kCachePass = 4ULL << 40U,
-                        kBidirectionalPass = 5ULL << 40U, kTrialPass = 6ULL << 40U;
+                        kBidirectionalPass = 5ULL << 40U;
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
 constexpr double kGenerationShare = 1.5;
+/// Where indirect light is less than this part of the image, the next generation comes later in proportion, by up to this.
+constexpr double kMuchIndirect = 0.25, kMostPatience = 10.0;
 /// Where the global map is evaluated for gather rays.
 constexpr std::size_t kPlaces = 60'000;
 /// How much longer the next generation takes, about.
@@ -48,9 +49,8 @@ constexpr float kMaxCausticRadius = 0.05F;  ///< of the scene's radius
 constexpr double kDefaultError = 0.05;
 /// Iterations before pixels are told apart by their noise.
 constexpr std::uint32_t kUniformIterations = 4;
-/// Lamps that fill less of what a surface sees are never left to chance; a render of few samples has no time to try.
-constexpr double kLeastLampShare = 2e-3;
-constexpr std::uint32_t kLeastSamplesToTry = 16;
+/// Caustic photon paths of an iteration, whatever noise asks for.
+constexpr double kFewestPaths = 4e3, kMostPaths = 4e6;
 /// Iterations before the radii of kernels are corrected by noise and bias.
 constexpr std::uint32_t kCorrectRadiiAfter = 8;
 /// Time of a ray of the caustic photons, with what is made of them, in units of an eye ray's; as measured.
@@ -148,7 +148,7 @@ public:
         // Without maps a sample depends on nothing that was before it.
         if (!plan_.causticMap && !plan_.cache && !plan_.adaptive) film_.countSamples(sample);
         else
-            for (; (trial_ || film_.samples() < sample) && !progress_.stopAsked(); ++iteration_) {
+            for (; film_.samples() < sample && !progress_.stopAsked(); ++iteration_) {
                 iterate();
                 tell("iterations before the sample");
             }
@@ -209,12 +209,10 @@ private:
     void renewGeneration();
     void causticPass();
     void fitRadii();
-    void tryChance();
-    void leaveCausticsToChance();
-    [[nodiscard]] std::uint64_t trialPass();
     void lightPass();
     void eyePass();
     void renewShares();
+    void setCausticPaths(double paths);
     void makeMaps();
     [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, int number, FirstHit& first, StringSums* strings = nullptr) const;
     [[nodiscard]] std::uint32_t samplesPerPixel() const;
@@ -266,9 +264,6 @@ private:
     Plan plan_;
     std::unique_ptr<EmissionGuide> guide_;
     std::unique_ptr<KernelRadii> kernelRadii_;  ///< none: one radius for all pixels
-    std::unique_ptr<CausticTrial> trial_;       ///< null: none, or decided
-    std::uint8_t causticsTried_ = 0;            ///< as in CheckpointState
-    std::uint64_t trialRays_ = 0;
     std::unique_ptr<CausticMap> causticMap_;
     std::unique_ptr<RadianceMap> globalMap_;
     std::unique_ptr<TexelIrradiance> texels_;
@@ -303,11 +298,7 @@ void Renderer::prepare() {
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
     context_.options.splitLampChains = plan_.splitLampChains;
     context_.maps.causticChains = plan_.causticChains;
-    const bool fewSamples = request_.budget.samples && *request_.budget.samples < kLeastSamplesToTry;
-    if (plan_.causticMap && request_.settings.causticMap == "auto" && !fewSamples && lampShare(scene_, survey_) > kLeastLampShare) {
-        trial_ = std::make_unique<CausticTrial>(camera_.width(), camera_.height());
-        causticsTried_ = 1;
-    }
+    context_.maps.photonsPerEtendue = static_cast<float>(plan_.causticPaths * plan_.guideGain);
     if (!request_.windows.empty()) keepWindows();
 }
 
@@ -337,67 +328,12 @@ std::uint64_t Renderer::raysSoFar() const {
 bool Renderer::generationDue() const {
     if (!plan_.cache || iteration_ == 0) return plan_.cache;
     if (raysSince_ <= kGenerationShare * raysOfGeneration_) return false;
+    // Where little light is indirect its records may be the worse.
+    const double patience = std::clamp(kMuchIndirect / std::max(film_.indirectShare(), 1e-6), 1.0, kMostPatience);
+    if (raysSince_ <= kGenerationShare * patience * raysOfGeneration_) return false;
     // Near the end of a budget of time a new one would not be used enough.
     const double next = secondsOfGeneration_ * kGenerationGrowth;
     return !request_.budget.seconds || elapsed() + (1.0 + kGenerationShare) * next <= *request_.budget.seconds;
-}
-
-/// A sample of every trial pixel with the caustics by S chains. Returns its rays.
-std::uint64_t Renderer::trialPass() {
-    TransportContext chance = context_;
-    chance.maps.caustic = nullptr;
-    chance.maps.causticChains = plan_.cache;
-    std::vector<std::uint64_t> rays(tiles(), 0);
-    forTiles([&](std::size_t tile, const auto& forPixels) {
-        Walk walk(chance);
-        forPixels([&](std::size_t pixel, const glm::vec2& corner) {
-            const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
-            if (!CausticTrial::takes(x, y) || (!inWindow_.empty() && !inWindow_[pixel])) return;
-            Sampler sampler(hashCombine(request_.seed, kTrialPass), pixel, iteration_);
-            const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
-            const CameraRay ray = camera_.ray(corner + jitter, lens);
-            FirstHit first;
-            const LayeredRadiance radiance = walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), 1.0F}, sampler, &first);
-            if (isFinite(radiance.total())) trial_->add(x, y, static_cast<double>(luminance(radiance.total())), static_cast<double>(radiance.chains));
-        });
-        rays[tile] = walk.rays();
-    });
-    return std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
-}
-
-/// The first iterations both ways; then the better one goes on.
-void Renderer::tryChance() {
-    {
-        const StageTimer timer(eyeStage_, windowScale_);
-        const std::uint64_t rays = trialPass();
-        trialRays_ += rays;
-        eyeStage_.rays += ofWholeImage(rays);
-    }
-    if (film_.samples() < CausticTrial::kIterations) return;
-    constexpr double n = CausticTrial::kIterations;
-    TrialCosts costs;
-    costs.photonRays = kPhotonRayTime * static_cast<double>(causticStage_.rays) / (n * windowScale_);
-    costs.eyeRays = static_cast<double>(film_.rays()) / n;
-    costs.chanceRays = 4.0 * static_cast<double>(trialRays_) / n;
-    const TrialVerdict verdict = trial_->judge(film_, costs);
-    trial_.reset();
-    causticsTried_ = verdict.byChance ? 3 : 2;
-    if (verdict.byChance) leaveCausticsToChance();
-    plan_.revise("caustic map", verdict.byChance ? "off" : "on", verdict.reason);
-}
-
-/// What the map has shown so far is noisier than what comes: the image starts again.
-void Renderer::leaveCausticsToChance() {
-    plan_.causticMap = false;
-    plan_.causticChains = plan_.cache;
-    context_.maps.caustic = nullptr;
-    context_.maps.causticChains = plan_.causticChains;
-    causticMap_.reset();
-    kernelRadii_.reset();
-    guide_.reset();
-    film_ = Film(camera_.width(), camera_.height());
-    const auto& layers = request_.layers;
-    if (std::find(layers.begin(), layers.end(), "classes") != layers.end()) film_.keepStrings(scene_.lobeKinds());
 }
 
 /// What the eye paths of this iteration read.
@@ -413,7 +349,6 @@ void Renderer::iterate() {
     if (bidirectional()) bidirectionalPass();
     else if (request_.method != Method::Light) eyePass();
     else film_.countSamples(1);
-    if (trial_) tryChance();
     secondsOfIteration_ = elapsed() - began - (globalStage_.seconds + cacheStage_.seconds - once);
 }
 
@@ -560,7 +495,15 @@ void Renderer::renewShares() {
     const double once = eyeStage_.seconds * static_cast<double>(film_.pixels()) / (windowScale_ * static_cast<double>(std::max<std::uint64_t>(1, film_.taken())));
     if (b.seconds) limits.mostMean = static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * *b.seconds / std::max(1e-9, once)));
     if (b.rays) limits.mostMean = static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * static_cast<double>(*b.rays) / std::max(1.0, eyeRays * windowScale_)));
-    film_.setShares(sampleShares(noise, camera_.width(), camera_.height(), limits, hashCombine(request_.seed, n)));
+    limits.fixedPhotons = !plan_.causticMap || request_.settings.causticPhotons >= 0;
+    const SampleShares chosen = sampleShares(noise, camera_.width(), camera_.height(), limits, hashCombine(request_.seed, n));
+    film_.setShares(chosen.ofPixel);
+    if (!limits.fixedPhotons) setCausticPaths(chosen.photons * static_cast<double>(causticStage_.photonsEmitted) / (iteration_ + 1));
+}
+
+void Renderer::setCausticPaths(double paths) {
+    plan_.causticPaths = static_cast<std::uint32_t>(std::clamp(paths, kFewestPaths, kMostPaths));
+    context_.maps.photonsPerEtendue = static_cast<float>(plan_.causticPaths * plan_.guideGain);
 }
 
 std::uint32_t Renderer::samplesPerPixel() const {
@@ -745,8 +688,7 @@ CheckpointKey Renderer::checkpointKey() const {
 }
 
 void Renderer::save() const {
-    CheckpointState state{iteration_, generation_, raysOfGeneration_, raysSince_, film_.save(), {}, {}, causticsTried_, {}};
-    if (trial_) state.trial = trial_->save();
+    CheckpointState state{iteration_, generation_, raysOfGeneration_, raysSince_, film_.save(), {}, {}, plan_.causticPaths};
     state.training.resize(plan_.training.size() * sizeof(UsefulEmission));
     if (!plan_.training.empty()) std::memcpy(state.training.data(), plan_.training.data(), state.training.size());
     if (kernelRadii_) state.radii = kernelRadii_->save();
@@ -765,14 +707,8 @@ void Renderer::saveWhenDue(bool now) {
 void Renderer::resume() {
     const auto state = readCheckpoint(request_.checkpoint, checkpointKey());
     if (!state) return;
-    causticsTried_ = state->causticsTried;
-    const bool trialFits = causticsTried_ != 1 || (trial_ && trial_->restore(state->trial));
-    if (causticsTried_ != 1) trial_.reset();
-    if (causticsTried_ == 3) {
-        leaveCausticsToChance();
-        plan_.revise("caustic map", "off", "paths that meet the lamps were better in the first iterations");
-    }
-    if (!trialFits || !film_.restore(state->film) || state->training.size() % sizeof(UsefulEmission) != 0 ||
+    plan_.causticPaths = state->causticPaths;
+    if (!film_.restore(state->film) || state->training.size() % sizeof(UsefulEmission) != 0 ||
         (kernelRadii_ && !kernelRadii_->restore(state->radii, workers_)))
         throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", request_.checkpoint.string(), "delete it or render without --resume");
     plan_.training.resize(state->training.size() / sizeof(UsefulEmission));

@@ -17,6 +17,7 @@ constexpr float kOwnShare = 0.25F;
 constexpr float kFloor = 0.01F;  ///< of relmse, in squares of the mean
 /// The kernels' bias is about as large as the photons' noise, squared, and falls more slowly.
 constexpr double kBiasAndNoise = 3.0;
+constexpr std::array<double, 7> kPhotons{0.125, 0.25, 0.5, 0.7, 1.0, 1.4, 2.0};
 constexpr std::array<float, 7> kMeans{1.0F, 1.5F, 2.0F, 3.0F, 4.0F, 6.0F, 8.0F};
 
 /// Means over squares of (2 kNeighbours + 1)^2, cut at the border.
@@ -75,6 +76,7 @@ struct Need {
 
 struct Allotment {
     float scale = 0.0F;
+    double photons = 1.0;
     double cost = 0.0;                ///< (photons' + eye's variance) x (photons' + eye's rays)
 };
 
@@ -89,35 +91,39 @@ struct Allotment {
             if (noise[i].inside) samples += static_cast<double>(wanted(need, i, middle, limits.mostOfPixel));
         (samples < mean * inside ? low : high) = middle;
     }
-    Allotment result{low, 0.0};
-    double variance = kBiasAndNoise * need.photons, rays = limits.photonRays;
+    Allotment result{mean > 1.0 ? low : 0.0F};
+    double variance = 0.0, rays = 0.0;
     for (std::size_t i = 0; i < noise.size(); ++i) {
         if (!noise[i].inside) continue;
-        const float k = wanted(need, i, low, limits.mostOfPixel);
+        const float k = wanted(need, i, result.scale, limits.mostOfPixel);
         variance += static_cast<double>(need.relative[i] / k);
         rays += static_cast<double>(need.rays[i] * k);
     }
-    result.cost = variance * rays;
+    for (const double f : kPhotons) {
+        if (limits.fixedPhotons && f != 1.0) continue;
+        const double cost = (kBiasAndNoise * need.photons / f + variance) * (f * limits.photonRays + rays);
+        if (result.cost == 0.0 || cost < result.cost) result.cost = cost, result.photons = f;
+    }
     return result;
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
+SampleShares sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
                                        std::uint64_t seed) {
     const Need need = needOf(noise, width, height);
-    Allotment best{0.0F, 0.0};
+    Allotment best;
     for (const float mean : kMeans) {
         if (mean > limits.mostMean && mean > 1.0F) break;
-        const Allotment a = mean > 1.0F ? allot(noise, need, static_cast<double>(mean), limits) : Allotment{0.0F, allot(noise, need, 1.0, limits).cost};
+        const Allotment a = allot(noise, need, static_cast<double>(mean), limits);
         if (mean == 1.0F || a.cost < best.cost) best = a;
     }
-    std::vector<std::uint8_t> shares(noise.size(), 1);
+    SampleShares shares{std::vector<std::uint8_t>(noise.size(), 1), best.photons};
     for (std::size_t i = 0; i < noise.size(); ++i) {
         if (!noise[i].inside) continue;
         const float k = wanted(need, i, best.scale, limits.mostOfPixel), whole = std::floor(k);
         const float u = static_cast<float>(hash64(seed + i) >> 40U) * 0x1p-24F;
-        shares[i] = static_cast<std::uint8_t>(whole + (u < k - whole ? 1.0F : 0.0F));
+        shares.ofPixel[i] = static_cast<std::uint8_t>(whole + (u < k - whole ? 1.0F : 0.0F));
     }
     return shares;
 }

@@ -6,8 +6,8 @@
 ///
 /// With v the variance of one eye sample, c its rays, L the pixel's luminance and e2 the floor of relmse, the sum over pixels
 /// of v / (k (L^2 + e2)) is least for a given number of rays when k ~ sqrt(v / (c (L^2 + e2))). The photons' noise P is
-/// the same for all samples of an iteration; the mean of k makes (P + Q) (rays of the photon pass + rays of the eye pass)
-/// least, Q being the eye samples' relative variance.
+/// the same for all samples of an iteration, and P / f for f times as many photons; f and the mean of k make (P / f + Q)
+/// (f rays of the photon pass + rays of the eye pass) least, Q being the eye samples' relative variance.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,16 @@ struct ShareLimits {
     float mostOfPixel = 32.0F;        ///< samples of one pixel in an iteration
     float mostMean = 8.0F;            ///< of an iteration, over the pixels
     double photonRays = 0.0;          ///< of an iteration, in units of an eye ray's time
+    bool fixedPhotons = false;        ///< their number is not to be changed
 };
 
-/// Samples for each pixel in an iteration, at least 1. `seed` keys the rounding.
-[[nodiscard]] std::vector<std::uint8_t> sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
+struct SampleShares {
+    std::vector<std::uint8_t> ofPixel;  ///< samples in an iteration, at least 1
+    double photons = 1.0;             ///< photon paths, as a multiple of those of the iterations so far
+};
+
+/// `seed` keys the rounding.
+[[nodiscard]] SampleShares sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
                                                      std::uint64_t seed);
 
 }  // namespace pellucid

@@ -208,6 +208,14 @@ float Lights::cosineAt(std::uint32_t light, const glm::vec3& direction) const no
     return std::fabs(glm::dot(impl_->parts.triangles[entry.index].normal, direction));
 }
 
+float Lights::etendueDensity(std::uint32_t light, const glm::vec3& direction) const noexcept {
+    const LightKind what = kind(light);
+    if (what != LightKind::Triangle && what != LightKind::Environment) return std::numeric_limits<float>::infinity();
+    const EmissionPdf pdf = pdfEmission(light, direction);
+    const float cosine = cosineAt(light, direction);
+    return cosine > 0.0F ? pdf.position * pdf.direction / cosine : 0.0F;
+}
+
 EmissionPdf Lights::pdfEmission(std::uint32_t light, const glm::vec3& direction) const noexcept {
     const LightEntry& entry = impl_->entries[light];
     const Parts& parts = impl_->parts;

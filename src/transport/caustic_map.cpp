@@ -51,14 +51,16 @@ struct KernelSum : WithinRadius {
     const DiffuseLobe& lobe;
     glm::dvec3 sum{0.0};
     double inner = 0.0;  ///< luminance by the kernel of half the area
+    float radius, photonsPerEtendue;
 
-    KernelSum(const PhotonList& list, const glm::vec3& p, const glm::vec3& ng, const glm::vec3& ns, const DiffuseLobe& l, float r2)
-        : WithinRadius{r2}, photons(list), point(p), normal(ng), shadingNormal(ns), lobe(l) {}
+    KernelSum(const PhotonList& list, const glm::vec3& p, const glm::vec3& ng, const glm::vec3& ns, const DiffuseLobe& l, float r, float perEtendue)
+        : WithinRadius{r * r}, photons(list), point(p), normal(ng), shadingNormal(ns), lobe(l), radius(r), photonsPerEtendue(perEtendue) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
         const Photon& p = photons[index];
         if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
         const float part = distance2 / radius2;
-        const float through = lobe.b != 0.0F ? lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal))) : 1.0F;
+        float through = lobe.b != 0.0F ? lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal))) : 1.0F;
+        if (photonsPerEtendue >= 0.0F) through *= 1.0F - chanceShare(radius, photonsPerEtendue, p.etendueDensity);
         sum += glm::dvec3(p.flux * ((1.0F - part) * through));
         inner += static_cast<double>(luminance(p.flux) * (2.0F * std::max(0.0F, 1.0F - 2.0F * part) * through));
         return true;
@@ -82,8 +84,8 @@ CausticMap::~CausticMap() = default;
 CausticMap::CausticMap(CausticMap&&) noexcept = default;
 
 Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                           const DiffuseLobe& lobe, float radius, float* blur) const noexcept {
-    KernelSum result(impl_->photons, point, geometricNormal, shadingNormal, lobe, radius * radius);
+                           const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue) const noexcept {
+    KernelSum result(impl_->photons, point, geometricNormal, shadingNormal, lobe, radius, photonsPerEtendue);
     impl_->tree.search(point, result);
     const double perArea = 2.0 / (kPiD * static_cast<double>(radius) * static_cast<double>(radius));
     const Rgb irradiance(result.sum * perArea);

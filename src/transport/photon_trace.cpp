@@ -26,7 +26,7 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
         const auto start = guide.sample(sampler);
         if (!start) return;
         LightPath path{start->emission.ray, start->emission.flux};
-        const float emitted = luminance(path.flux);
+        const float emitted = luminance(path.flux), density = scene.lights().etendueDensity(start->emission.light, path.ray.direction);
         bool useful = false;
         glm::vec3 landed(0.0F);
         Rgb arrived(0.0F);
@@ -36,7 +36,8 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
             if (!a) break;
             path.sink = receives(*a) ? &EnergyBalance::left : &EnergyBalance::absorbed;
             if (path.vertices > 1 && receives(*a)) {
-                const Photon photon = photonOf(*a, path.flux, perPath);
+                Photon photon = photonOf(*a, path.flux, perPath);
+                photon.etendueDensity = density;
                 if (usable(photon) && (visible == nullptr || visible->seen(photon.position))) {
                     out.photons.push_back(photon);
                     path.sink = &EnergyBalance::stored;

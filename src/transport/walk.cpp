@@ -50,7 +50,10 @@ struct Walk::State {
     bool deltaChain = true;          ///< from the eye: no other lobe so far
     bool lampsFollowed = false;      ///< over that chain, by LampChains
     bool chainsNext = false;         ///< at this D vertex: the cache has served all but the caustics
+    bool sharedNext = false;         ///< at this D vertex: photons have brought their share of the caustics
     bool onlyChains = false;         ///< behind it: S lobes alone go on
+    bool chainsShared = false;       ///< behind it: what comes over S alone has the eye's share only
+    float kernelRadius = 0.0F;       ///< at that D vertex
     bool causticServed = false;      ///< at this D vertex: what comes over S alone is counted
 
     /// Of a lamp that was met.
@@ -93,12 +96,19 @@ float Walk::hitWeight(float pdfSampled, float pdfLight) const noexcept {
     return misWeight(pdfSampled, pdfLight);
 }
 
+/// The eye's share of light that `light` sends over S alone; `towards` points to it.
+float Walk::chainShare(const State& state, std::uint32_t light, const glm::vec3& towards) const noexcept {
+    return chanceShare(state.kernelRadius, context_.maps.photonsPerEtendue, context_.scene.lights().etendueDensity(light, -towards));
+}
+
 void Walk::addEscaped(State& state) const noexcept {
     const Environment* environment = context_.scene.environment();
     if (environment == nullptr || !state.lampCounts(context_.options.left)) return;
     float weight = 1.0F;
     if (state.lampSampled)
         weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
+    if (state.chainsShared && state.chainSpecular && !state.chainEmpty)
+        weight *= chainShare(state, context_.scene.lights().environmentLight(), state.ray.ray.direction);
     state.addLamp(state.throughput * environment->radiance(state.ray.ray.direction) * weight);
 }
 
@@ -111,6 +121,8 @@ void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
         weight = hitWeight(state.pdfSolidAngle,
                            context_.scene.lights().pdfTriangle(state.lightPoint, state.lightNormal, hit.point.geometry, hit.point.primitive,
                                                                state.ray.ray.direction, hit.distance));
+    if (state.chainsShared && state.chainSpecular && !state.chainEmpty)
+        weight *= chainShare(state, context_.scene.lights().lightOf(hit.point.geometry, hit.point.primitive), state.ray.ray.direction);
     state.addLamp(state.throughput * emitted * weight);
 }
 
@@ -143,9 +155,12 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
     if (maps.caustic != nullptr) {
         const float radius = glm::clamp(state.ray.kernelFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
         state.causticServed = true;
+        state.sharedNext = maps.causticsShared();
+        state.kernelRadius = radius;
         if (first != nullptr && state.vertices == 1) first->kernelRadius = radius;
         float blur = 0.0F;
-        const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius, &blur);
+        const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius, &blur,
+                                                          state.sharedNext ? maps.photonsPerEtendue : -1.0F);
         PathString path = state.ledger.pathAfter(kDiffuse);
         path.pass(kSpecular);
         const Rgb seen = state.throughput * outgoing * irradiance;
@@ -156,7 +171,7 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
     if (maps.cache != nullptr) {
         if (const auto cached = maps.cache->lookup(position, normal)) {
             state.radiance.add(state.ledger.pathAfter(kDiffuse).open(), state.throughput * outgoing * cached->through(lobe));
-            state.chainsNext = maps.caustic == nullptr && maps.causticChains;
+            state.chainsNext = maps.causticChains;
             return state.chainsNext ? kDiffuse : kNoLobe;
         }
         ++cacheMisses_;  // gathers once: the walk simply goes on
@@ -199,7 +214,8 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
         medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, through), light->distance);
     for (std::size_t i = 0; i < 3; ++i)
         if (!isBlack(sum[i])) {
-            const Rgb seen = state.throughput * arriving * sum[i];
+            const bool shared = i == 0 && state.chainsShared && state.chainSpecular;  // over S alone
+            const Rgb seen = state.throughput * arriving * sum[i] * (shared ? chainShare(state, light->light, light->wi) : 1.0F);
             state.radiance.add(state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)), seen);
             if (state.onlyChains) state.radiance.chains += luminance(seen);
         }
@@ -237,7 +253,8 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     const bool casts = kind == kSpecular;
     state.ledger.pass(kind);
     if (kind == kDiffuse) {
-        state.behind = state.causticServed ? Behind::CausticMapped : Behind::PathTraced;
+        state.behind = state.causticServed && !state.sharedNext ? Behind::CausticMapped : Behind::PathTraced;
+        state.chainsShared = state.sharedNext;
         state.chainEmpty = state.chainSpecular = true;
         state.gathering = true;
         state.skipDirect = false;
@@ -302,7 +319,7 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     }
     LobeKinds sampled = kinds & (kSpecular | kGlossy);
     LobeKinds direct = kinds;
-    state.causticServed = state.chainsNext = false;
+    state.causticServed = state.chainsNext = state.sharedNext = false;
     sampler.setDimension(dimension + kCorner);
     if ((kinds & kDiffuse) != kNoLobe) {
         const LobeKinds carried = serveDiffuse(state, vertex, sampler, first);

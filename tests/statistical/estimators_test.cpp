@@ -182,7 +182,9 @@ double photonAllowance(const std::string& group) {
 }
 
 /// Class by class: a double count or a loss names itself.
-TEST(ClassLedger, PhotonsCarryWhatBidirectionalPathsCarry) {
+class ClassLedger : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(ClassLedger, PhotonsCarryWhatBidirectionalPathsCarry) {
     const Workers workers;
     for (const SmallScene& small : {roughGlass(), smoothCasters()}) {
         const Scene scene = made(small, workers);
@@ -195,13 +197,21 @@ TEST(ClassLedger, PhotonsCarryWhatBidirectionalPathsCarry) {
         photon.firstSeed = 700;
         photon.settings.globalPhotons = 30'000;
         photon.settings.gatherRays = 256;
+        if (*GetParam().first != '\0') {
+            setParameter(photon.settings, GetParam().first, GetParam().second);
+            photon.samples = 48;  // lamps are met by chance
+        }
         for (const GroupDifference& d :
              compareGroups(renderSeeds(scene, reference, workers), renderSeeds(scene, photon, workers), photonAllowance, 0.004))
             EXPECT_TRUE(d.holds()) << small.name << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
     }
 }
 
-TEST(ClassLedger, StringsAndGroups) {
+/// Caustics by photons, by photons and paths that meet the lamp, and by such paths alone.
+INSTANTIATE_TEST_SUITE_P(Ways, ClassLedger,
+                         ::testing::Values(std::pair{"", ""}, std::pair{"photon.chance", "on"}, std::pair{"photon.caustic_map", "off"}));
+
+TEST(PathStrings, StringsAndGroups) {
     PathString path;
     EXPECT_EQ(path.name(), "EL");
     for (const LobeKinds kind : {kSpecular, kSpecular, kDiffuse, kSpecular}) path.pass(kind);

@@ -71,6 +71,8 @@ public:
     /// Of the mean so far, all classes.
     [[nodiscard]] double luminanceAt(int x, int y) const noexcept;
     [[nodiscard]] double meanLuminance() const noexcept;
+    /// Part of a pixel's luminance that is indirect light, on the mean over pixels; darkness counts as a tenth of the image's mean.
+    [[nodiscard]] double indirectShare() const noexcept;
     [[nodiscard]] NonFinite nonfinite() const noexcept;
 
     /// For checkpoints: the raw state.

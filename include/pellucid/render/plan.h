@@ -40,19 +40,18 @@ struct Plan {
     int gatherRays = 128;                ///< a record, in the first generation
     bool growPhotons = true, growRays = true;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
-    bool causticChains = false;          ///< no caustic map beside the cache: eye paths follow S chains to the lamps
+    bool causticChains = false;          ///< beside the cache eye paths follow S chains to the lamps, alone or with a share
     bool bidirectional = false;          ///< eye paths meet light paths
     float texelWidth = 0.0F;             ///< of the texel irradiance, scene units; 0: off
     bool splitLampChains = false;        ///< lamps seen through smooth glass: both ways at each interface
     bool adaptive = false;               ///< pixels take samples by their noise
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;
-    /// The same decision with another outcome.
-    void revise(const std::string& name, std::string choice, std::string reason);
     std::vector<std::string> blindSpots;
     double timeCap = 0.0;                ///< seconds, for a render that has only an error to reach; 0: none
     std::uint64_t pilotRays = 0, pilotPhotons = 0;
     double usefulShare = 0.0;            ///< of the photon paths, in the last look of the pilot
+    double guideGain = 1.0;              ///< that share over the one without guide
 
     /// A quick first generation, then ever better ones: more photons and rays, a smaller error, so that the bias of map and
     /// cache vanishes as time goes on. What was set by name stays, but for the error.

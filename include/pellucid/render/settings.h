@@ -32,6 +32,7 @@ struct Settings {
     double alpha = 2.0 / 3.0;               ///< photon.alpha: radius reduction
     std::string guiding = "auto";           ///< photon.guiding: auto | on | off
     std::string causticMap = "auto";        ///< photon.caustic_map: auto | on | off
+    std::string chance = "off";             ///< photon.chance: on | off
     // reference
     double texelWidth = 1.0;                ///< reference.texel: in pixel footprints; 0: off
     // irradiance cache and gather

@@ -140,6 +140,10 @@ public:
     /// Densities of sampleEmission() for light that leaves `light` in `direction`.
     [[nodiscard]] EmissionPdf pdfEmission(std::uint32_t light, const glm::vec3& direction) const noexcept;
 
+    /// Density of sampleEmission() for light that leaves `light` in `direction`, per etendue (area x projected solid angle,
+    /// which every chain of mirrors and lenses keeps); infinite for lights without size.
+    [[nodiscard]] float etendueDensity(std::uint32_t light, const glm::vec3& direction) const noexcept;
+
     /// Emission with lights chosen by power.
     [[nodiscard]] std::optional<EmissionSample> sampleEmission(const EmissionNumbers& u) const noexcept;
     /// Emission from one given light (pmfLight = 1): guiding chooses the light itself.

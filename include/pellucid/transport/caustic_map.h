@@ -15,6 +15,16 @@ struct FluxSums {
     double sum = 0.0, squares = 0.0;
 };
 
+/// Multiple importance sampling of one class, E .. D S+ L, by photons in a kernel and by eye paths that go on from D over S
+/// lobes and meet the lamp. Along a chain of mirrors and lenses etendue is kept, and both ways choose reflection or refraction
+/// alike: so the density of photons at D in a direction is N p, p the density of their emission per etendue, and the eye's
+/// 1 / pi. A kernel of radius r takes pi r^2 N p of them [Georgiev2012, eq. 11]; the balance heuristic gives the eye path
+/// 1 / (1 + pi^2 r^2 N p). Chains with rough lobes use the same share, which is not the best one there but still a partition.
+[[nodiscard]] inline float chanceShare(float radius, float photonsPerEtendue, float etendueDensity) noexcept {
+    constexpr float kPiSquared = 9.8696044F;
+    return 1.0F / (1.0F + kPiSquared * radius * radius * photonsPerEtendue * etendueDensity);
+}
+
 class CausticMap {
 public:
     explicit CausticMap(PhotonList photons);
@@ -25,8 +35,9 @@ public:
     /// E = sum dPhi T(wi.n) K(d/r) / (pi r^2), Epanechnikov kernel K = 2 (1 - d^2/r^2). [Jensen1996], [Silverman1986]
     /// `blur` receives an estimate of the kernel's bias, in luminance: the bias grows as r^2, so twice the difference of this
     /// kernel's estimate and that of one with half its area, from the same photons.
+    /// `photonsPerEtendue` >= 0: each photon has the share that chanceShare() leaves to it.
     [[nodiscard]] Rgb irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                                 const DiffuseLobe& lobe, float radius, float* blur = nullptr) const noexcept;
+                                 const DiffuseLobe& lobe, float radius, float* blur = nullptr, float photonsPerEtendue = -1.0F) const noexcept;
 
     /// What arrived within `radius` on the side of the normal.
     [[nodiscard]] FluxSums fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept;

@@ -20,7 +20,9 @@ class IrradianceCache;
 /// Null: the pass is left out and its class is path traced.
 struct Maps {
     const CausticMap* caustic = nullptr;
-    bool causticChains = false;       ///< no caustic map, but caustics stay out of the cache: eye paths follow S chains to the lamps
+    /// Beside the cache eye paths follow S chains to the lamps: for all caustics, or with a caustic map for a share of them.
+    bool causticChains = false;
+    float photonsPerEtendue = 0.0F;   ///< with both: photon paths of a pass, and how many times denser the guide makes them
     const RadianceMap* global = nullptr;
     const IrradianceCache* cache = nullptr;
     float causticRadiusMin = 0.0F;    ///< in scene units
@@ -28,6 +30,7 @@ struct Maps {
 
     /// Whether light over S alone is kept out of cache and gather.
     [[nodiscard]] bool causticsApart() const noexcept { return caustic != nullptr || causticChains; }
+    [[nodiscard]] bool causticsShared() const noexcept { return caustic != nullptr && causticChains; }
 };
 
 /// How light reaches a vertex: by chance when a direction meets a lamp, by next-event estimation where that can find it,
@@ -113,6 +116,7 @@ private:
     struct Vertex;
     void run(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept;
     [[nodiscard]] bool step(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept;
+    [[nodiscard]] float chainShare(const State& state, std::uint32_t light, const glm::vec3& towards) const noexcept;
     void addEscaped(State& state) const noexcept;
     void addEmitted(State& state, const SurfaceHit& hit) const noexcept;
     [[nodiscard]] LobeKinds serveDiffuse(State& state, const Vertex& vertex, Sampler& sampler, FirstHit* first) noexcept;
