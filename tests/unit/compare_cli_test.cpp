@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <span>
 #include <string>
 
 #include <sys/wait.h>
@@ -19,6 +20,7 @@
 #include <pellucid/base/error.h>
 #include <pellucid/io/image_file.h>
 #include <pellucid/study/compare.h>
+#include <pellucid/study/diff_report.h>
 #include <pellucid/study/report.h>
 #include <pellucid/study/statistics.h>
 
@@ -83,6 +85,28 @@ TEST(CompareStatistics, BiasAndVarianceByHand) {
     EXPECT_DOUBLE_EQ(meanSquaredError(errors, once), 5.0);
     EXPECT_DOUBLE_EQ(errorVariance(errors, once), 2.0);  // s^2 of {1, 3}
     EXPECT_DOUBLE_EQ(biasSquared(errors, once), 3.0);    // 2^2 - 2/2
+}
+
+/// Noise of the colour of the light, a tenth of the radiance in each channel: relative variance 0.01 up to the floor,
+/// whether the layer tells each channel's variance or the luminance's.
+TEST(CompareStatistics, NoiseOfAColouredReference) {
+    const Rgb gold{1.0F, 0.5F, 0.02F};
+    const double luminance = 0.2126 * 1.0 + 0.7152 * 0.5 + 0.0722 * 0.02;
+    const double floor = 0.01 * std::pow((1.0 + 0.5 + 0.02) / 3.0, 2);
+    double expected = 0.0;
+    for (const double r : {1.0, 0.5, 0.02}) expected += 0.01 * r * r / (r * r + floor) / 3.0;
+    Image grey(2, 1, {"R", "G", "B", "variance.Y"}), colours(2, 1, {"R", "G", "B", "variance.R", "variance.G", "variance.B"});
+    for (std::size_t p = 0; p < 2; ++p) {
+        grey.setRgb(p, gold);
+        grey.at(p, 3) = static_cast<float>(0.01 * luminance * luminance);
+        colours.setRgb(p, gold);
+        colours.setRgb(p, 0.01F * gold * gold, 3);
+    }
+    for (const Image& reference : {grey, colours}) {
+        ASSERT_TRUE(referenceNoise(reference).has_value());
+        EXPECT_NEAR(*referenceNoise(reference), expected, 1e-7);
+        EXPECT_NEAR(errorProducts(reference, std::span(&reference, 1), true).referenceNoise, expected, 1e-7);
+    }
 }
 
 TEST(CompareReport, IsOnePageThatAsksForNothing) {

@@ -91,6 +91,7 @@ function draw() {
       context.strokeStyle = colour; context.lineWidth = width; context.stroke();
     }
   }
+  viewer.style.touchAction = view.zoom > 1 ? "none" : "pan-y";  // a finger scrolls the page until there is something to pan
   if (!view.stripAsked) { view.stripAsked = true; requestAnimationFrame(drawStrip); }
   tellPixel();
 }
@@ -101,6 +102,7 @@ function drawStrip() {
     const entry = entryFor(d3.select(this).datum()), context = this.getContext("2d");
     d3.select(this.parentNode).classed("shown", entry === view.left || entry === view.right).style("display", entry ? null : "none");
     if (!entry) return;
+    d3.select(this.parentNode).select("span").text(nameOf(entry));
     this.width = 320; this.height = Math.max(1, Math.round(320 * entry.height / entry.width));
     const scale = this.width / entry.width * view.zoom;
     context.imageSmoothingEnabled = scale < 1.5;
