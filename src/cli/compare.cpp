@@ -52,6 +52,11 @@ int runCompare(const CompareArguments& arguments) {
         log);
     terminal.clear();
     if (!arguments.common.quiet && !outcome.table.empty()) printResult(outcome.table);
+    if (outcome.interrupted)
+        logTo(log, LogLevel::Info,
+              "interrupted with " + std::to_string(outcome.finished) + " of " + std::to_string(outcome.asked) +
+                  " runs finished" + (outcome.table.empty() ? " and no reference yet" : "") +
+                  "; the same command goes on from there");
     return outcome.interrupted ? kInterrupted : 0;
 }
 

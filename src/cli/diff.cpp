@@ -22,6 +22,10 @@ namespace {
     return arguments.crop ? crop(image, *arguments.crop) : image;
 }
 
+[[nodiscard]] std::string sizeText(const Image& image) {
+    return std::to_string(image.width()) + "x" + std::to_string(image.height());
+}
+
 /// OUT.png for one image; OUT-1.png, OUT-2.png, ... for several.
 [[nodiscard]] std::filesystem::path mapFile(const DiffArguments& arguments, std::size_t index) {
     std::filesystem::path file = arguments.map;
@@ -33,6 +37,11 @@ namespace {
     DiffRow row;
     row.file = arguments.images[index];
     Image image = readCropped(row.file, arguments);
+    if (image.width() != reference.width() || image.height() != reference.height())
+        throw Error(ErrorKind::BadInput,
+                    "the images have different sizes: " + sizeText(image) + " against the reference's " +
+                        sizeText(reference),
+                    row.file, "render both at the same --size, or give a --crop that both have");
     if (arguments.exposureInvariant) {
         row.scale = exposureScale(reference, image);
         const double bias = compareImages(reference, image, false).bias;

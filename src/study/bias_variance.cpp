@@ -4,6 +4,7 @@
 #include <string>
 
 #include <pellucid/study/image_pair.h>
+#include <pellucid/study/reference_variance.h>
 #include <pellucid/study/statistics.h>
 
 namespace pellucid {
@@ -29,26 +30,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     }
     return true;
 }
-
-/// Variance of the reference's pixel and channel from its layer variance.R G B or variance.Y; 0 without.
-class ReferenceVariance {
-public:
-    explicit ReferenceVariance(const Image& reference) : reference_(reference) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            const int own = reference.channel(std::array{"variance.R", "variance.G", "variance.B"}[c]);
-            channel_[c] = own >= 0 ? own : reference.channel("variance.Y");
-        }
-    }
-    [[nodiscard]] double at(std::size_t pixel, std::size_t c) const noexcept {
-        if (channel_[c] < 0) return 0.0;
-        const double v = reference_.at(pixel, channel_[c]);
-        return std::isfinite(v) && v > 0.0 ? v : 0.0;
-    }
-
-private:
-    const Image& reference_;
-    std::array<int, 3> channel_{};
-};
 
 }  // namespace
 

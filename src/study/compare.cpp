@@ -1,6 +1,7 @@
 #include <pellucid/study/compare.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -128,29 +129,46 @@ void writeReport(const CompareRequest& request, const CompareRuns& runs, const C
     return makeReference(request, scenes, runs, store, workers, progress, log);
 }
 
+/// The time elapsed is that of the whole comparison.
+[[nodiscard]] Progress sinceStart(const Progress& progress, std::chrono::steady_clock::time_point start) {
+    Progress whole = progress;
+    if (progress.report)
+        whole.report = [&progress, start](ProgressReport report) {
+            report.secondsElapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            progress.report(report);
+        };
+    return whole;
+}
+
 }  // namespace
 
 CompareOutcome compare(const CompareRequest& asked, const SceneSource& scenes, const Workers& workers,
                        const Progress& progress, const LogSink& log) {
+    const auto start = std::chrono::steady_clock::now();
     CompareRequest request = asked;
     // A reference that cannot be read or does not fit is told before hours of rendering.
     if (!request.reference.empty()) request = withReferenceSize(request, loadReference(request.reference).image);
     const RunStore store(request.folder);
     CompareRuns runs = renderRuns(request, scenes, store, workers, progress, log);
-    CompareOutcome outcome{"", runs.interrupted};
+    CompareOutcome outcome;
+    outcome.interrupted = runs.interrupted;
+    outcome.finished = runs.runs.size();
+    outcome.asked = request.methods.size() * request.times.size() * static_cast<std::size_t>(request.seeds);
     if (runs.runs.empty()) return outcome;
-    const CompareReference reference = referenceFor(request, scenes, runs, store, workers, progress, log);
+    const CompareReference reference =
+        referenceFor(request, scenes, runs, store, workers, sinceStart(progress, start), log);
     outcome.interrupted = outcome.interrupted || progress.stopAsked();
     if (reference.image.pixels() == 0) return outcome;  // interrupted before there was one: the runs are kept
     if (!reference.remark.empty()) logTo(log, LogLevel::Warning, reference.remark);
     measureRuns(runs, reference, store, workers);
     const CompareFigures figures = analyse(request, runs, reference, store, workers);
-    const std::string curves = curvesJson(runs), summary = summaryJson(request, runs, reference, figures);
+    const std::string curves = curvesJson(request, runs), summary = summaryJson(request, runs, reference, figures);
     writeFile(store.folder() / "curves.json", curves);
-    writeFile(store.folder() / "curves.csv", curvesCsv(runs));
+    writeFile(store.folder() / "curves.csv", curvesCsv(request, runs));
     writeFile(store.folder() / "summary.json", summary);
     writeReport(request, runs, reference, store, workers, summary, curves);
     outcome.table = compareTable(reference, figures);
+    outcome.table += "\nreport: " + (store.folder() / "report.html").string() + "\n";
     return outcome;
 }
 

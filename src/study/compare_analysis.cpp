@@ -42,11 +42,18 @@ void addStages(PointFigures& point, const Runs& runs) {
         }
 }
 
+/// A variance lies above 0, and so does the interval that holds it.
+[[nodiscard]] Interval varianceInterval(const SeedBootstrap& bootstrap, const ErrorProducts& errors) {
+    Interval interval = bootstrap.interval([&](SeedCounts c) { return errorVariance(errors, c); });
+    if (interval.low < 0.0) interval.low = 0.0;
+    return interval;
+}
+
 [[nodiscard]] ClassFigures classFigures(const std::string& name, const ErrorProducts& errors,
                                         const SeedBootstrap& bootstrap) {
     return {name, bootstrap.interval([&](SeedCounts c) { return meanSquaredError(errors, c); }, IntervalScale::Log),
             bootstrap.interval([&](SeedCounts c) { return biasSquared(errors, c); }),
-            bootstrap.interval([&](SeedCounts c) { return errorVariance(errors, c); })};
+            varianceInterval(bootstrap, errors)};
 }
 
 [[nodiscard]] PointFigures pointFigures(const Runs& runs, double budget, const CellProducts& cell) {
@@ -63,14 +70,10 @@ void addStages(PointFigures& point, const Runs& runs) {
     point.flip = meanInterval(bootstrap, runs, [](const StoredRun& r) { return r.metrics->whole.flip; });
     point.bias = meanInterval(
         bootstrap, runs, [](const StoredRun& r) { return r.metrics->whole.bias; }, IntervalScale::Linear);
-    const auto interval = [&](const ErrorProducts& errors,
-                              double (*figure)(const ErrorProducts&, SeedCounts) noexcept) {
-        return bootstrap.interval([&](SeedCounts counts) { return figure(errors, counts); });
-    };
-    point.bias2 = interval(cell.relative, biasSquared);
-    point.variance = interval(cell.relative, errorVariance);
-    point.bias2Absolute = interval(cell.absolute, biasSquared);
-    point.varianceAbsolute = interval(cell.absolute, errorVariance);
+    point.bias2 = bootstrap.interval([&](SeedCounts c) { return biasSquared(cell.relative, c); });
+    point.variance = varianceInterval(bootstrap, cell.relative);
+    point.bias2Absolute = bootstrap.interval([&](SeedCounts c) { return biasSquared(cell.absolute, c); });
+    point.varianceAbsolute = varianceInterval(bootstrap, cell.absolute);
     const std::vector<double> relmse = valuesOf(runs, relmseOf), seconds = valuesOf(runs, secondsOf);
     point.efficiency = bootstrap.interval(
         [&](SeedCounts c) { return 1.0 / (countedMean(relmse, c) * countedMean(seconds, c)); }, IntervalScale::Log);
@@ -170,6 +173,16 @@ void addPairs(CompareFigures& figures, const CompareRequest& request, const Comp
 }
 
 }  // namespace
+
+int seedsNeeded(std::size_t comparisons) noexcept {
+    if (comparisons == 0) return 0;
+    int seeds = 1;
+    for (double smallest = 1.0; smallest * static_cast<double>(comparisons) > 1.0 - kConfidence;) {
+        ++seeds;
+        smallest *= seeds / (4.0 * seeds - 2.0);  // from (2K-2 choose K-1) splits to (2K choose K)
+    }
+    return seeds;
+}
 
 std::vector<const StoredRun*> runsOf(const CompareRuns& runs, const std::string& label, double budget) {
     Runs found;

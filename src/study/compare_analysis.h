@@ -54,6 +54,10 @@ struct CompareFigures {
     std::vector<PairFigures> pairs;
 };
 
+/// Seeds with which a family of `comparisons` permutation tests can show a difference at all: the smallest p of K seeds a
+/// side is 2 / (2K choose K), and [Holm1979] multiplies the smallest of a family by its size. 0 without comparisons.
+[[nodiscard]] int seedsNeeded(std::size_t comparisons) noexcept;
+
 /// Finished runs of one method and one budget, by seed.
 [[nodiscard]] std::vector<const StoredRun*> runsOf(const CompareRuns& runs, const std::string& label, double budget);
 

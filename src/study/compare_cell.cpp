@@ -54,8 +54,8 @@ void writeCell(const std::filesystem::path& file, const std::string& key, const 
     return image.channel(name + ".R") >= 0 && image.channel(name + ".G") >= 0 && image.channel(name + ".B") >= 0;
 }
 
-/// The reference's noise as known for the whole image replaces the layers' where those see less of it: variance.Y of a
-/// made reference does not hold the scatter of its light-traced part.
+/// The noise of a made reference is known better than from its layer variance.Y, which is too large where the samples of a
+/// pixel are spread evenly and holds no colour: from the difference of its two halves.
 void setReferenceNoise(CellProducts& cell, const CompareReference& reference) {
     if (!reference.made || !std::isfinite(reference.noise)) return;
     const double seen = cell.relative.referenceNoise;
@@ -74,7 +74,7 @@ std::vector<std::string> classesIn(const Image& reference) {
 
 CellProducts cellProducts(const std::vector<const StoredRun*>& runs, const CompareReference& reference,
                           const RunStore& store, const Workers& workers) {
-    std::string key = "3 " + reference.hash;
+    std::string key = "4 " + reference.hash;
     for (const StoredRun* run : runs) key += " " + run->imageHash;
     const std::filesystem::path folder = store.folder() / "cells", file = folder / (hashText(key) + ".json");
     CellProducts cell;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -114,12 +114,11 @@ using Json = nlohmann::ordered_json;
 }
 
 /// By method as asked, budget, seed: the order of the runs does not depend on what was finished when.
-[[nodiscard]] std::vector<const StoredRun*> sorted(const CompareRuns& runs) {
+[[nodiscard]] std::vector<const StoredRun*> sorted(const CompareRequest& request, const CompareRuns& runs) {
     std::vector<const StoredRun*> order;
-    for (const StoredRun& run : runs.runs) order.push_back(&run);
-    std::ranges::sort(order, [](const StoredRun* a, const StoredRun* b) {
-        return std::tie(a->key.label, a->key.budget, a->key.seed) < std::tie(b->key.label, b->key.budget, b->key.seed);
-    });
+    for (const CompareMethod& method : request.methods)
+        for (const double budget : request.times)
+            for (const StoredRun* run : runsOf(runs, method.label, budget)) order.push_back(run);
     return order;
 }
 
@@ -136,19 +135,26 @@ using Json = nlohmann::ordered_json;
     return value + " [" + figure(scale * i.low) + ", " + (std::isfinite(i.high) ? figure(scale * i.high) : "inf") + "]";
 }
 
+[[nodiscard]] int fewestSeeds(const CompareFigures& figures) {
+    int fewest = std::numeric_limits<int>::max();
+    for (const MethodFigures& method : figures.methods)
+        for (const PointFigures& point : method.points) fewest = std::min(fewest, point.seeds);
+    return fewest;
+}
+
 }  // namespace
 
-std::string curvesJson(const CompareRuns& runs) {
+std::string curvesJson(const CompareRequest& request, const CompareRuns& runs) {
     Json json = Json::array();
-    for (const StoredRun* run : sorted(runs)) json.push_back(runRow(*run));
+    for (const StoredRun* run : sorted(request, runs)) json.push_back(runRow(*run));
     return dumped(json);
 }
 
-std::string curvesCsv(const CompareRuns& runs) {
+std::string curvesCsv(const CompareRequest& request, const CompareRuns& runs) {
     std::string text =
         "method,seconds,seed,budget,rmse,relmse,relmse_trimmed,smape,flip,bias,nonfinite,error_estimate,iterations,"
         "samples_per_pixel,threads,peak_rss_bytes,relmse_direct,relmse_caustic,relmse_indirect,image\n";
-    for (const StoredRun* run : sorted(runs)) {
+    for (const StoredRun* run : sorted(request, runs)) {
         const Json row = runRow(*run);
         text += csvText(run->key.label);
         for (const char* name :
@@ -193,15 +199,17 @@ std::string summaryJson(const CompareRequest& request, const CompareRuns& runs, 
     for (std::size_t i = 0; i < figures.methods.size(); ++i)
         json["methods"].push_back(methodJson(request.methods[i], figures.methods[i]));
     json["comparisons"] = pairsJson(figures.pairs);
+    json["seeds_needed"] = seedsNeeded(figures.pairs.size());
     return dumped(json);
 }
 
 std::string compareTable(const CompareReference& reference, const CompareFigures& figures) {
-    TextTable table({"method", "seconds", "error, %", "relmse", "bias^2", "variance", "flip"});
+    TextTable table({"method", "seconds", "error, %", "relmse", "trimmed", "bias^2", "variance", "flip"});
     for (const MethodFigures& method : figures.methods)
         for (const PointFigures& p : method.points)
             table.add({method.label, figure(p.seconds.value), figure(100.0 * std::sqrt(p.relmse.value)),
-                       range(p.relmse), range(p.bias2), range(p.variance), figure(p.flip.value)});
+                       range(p.relmse), figure(p.relmseTrimmed.value), range(p.bias2), range(p.variance),
+                       figure(p.flip.value)});
     TextTable times({"method", "slope", "s to 10 %", "s to 5 %", "s to 2 %", "s to 1 %"});
     for (const MethodFigures& method : figures.methods) {
         std::vector<std::string> row{method.label, range(method.slope)};
@@ -215,6 +223,9 @@ std::string compareTable(const CompareReference& reference, const CompareFigures
         if (pair.significant() && pair.budget == longest)
             text += "\n" + figure(pair.budget) + " s: relmse of " + pair.a + " is " + range(pair.ratio) +
                     " times that of " + pair.b + " (p = " + figure(pair.pAdjusted) + " after Holm)";
+    if (const int needed = seedsNeeded(figures.pairs.size()); fewestSeeds(figures) < needed)
+        text += "\nnote: " + std::to_string(figures.pairs.size()) + " comparisons need --seeds " +
+                std::to_string(needed) + " before a difference can be told from chance";
     if (!reference.remark.empty()) text += "\nnote: " + printable(reference.remark);
     return text + (text.ends_with('\n') ? "" : "\n");
 }

@@ -8,8 +8,8 @@
 
 namespace pellucid {
 
-[[nodiscard]] std::string curvesJson(const CompareRuns& runs);
-[[nodiscard]] std::string curvesCsv(const CompareRuns& runs);
+[[nodiscard]] std::string curvesJson(const CompareRequest& request, const CompareRuns& runs);
+[[nodiscard]] std::string curvesCsv(const CompareRequest& request, const CompareRuns& runs);
 [[nodiscard]] std::string summaryJson(const CompareRequest& request, const CompareRuns& runs,
                                       const CompareReference& reference, const CompareFigures& figures);
 [[nodiscard]] std::string compareTable(const CompareReference& reference, const CompareFigures& figures);

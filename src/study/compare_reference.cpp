@@ -94,14 +94,30 @@ void writeState(const std::filesystem::path& file, const ReferenceState& state) 
     return pellucid::render(loaded.scene, render, workers, progress, log);
 }
 
-/// The stage's name and the time left of all the reference may take.
-[[nodiscard]] Progress referenceProgress(const Progress& progress) {
-    Progress inner = progress;
-    if (progress.report)
-        inner.report = [&progress](ProgressReport report) {
-            report.stage = "reference";
-            progress.report(report);
-        };
+/// What the reference is expected to take in all, at most `limit` seconds: its error falls as 1/sqrt(t).
+[[nodiscard]] double expectedSeconds(const ReferenceState& state, double best, double limit) {
+    if (!(state.seconds > 0.0) || !std::isfinite(state.error) || !(best > 0.0)) return limit;
+    return std::min(limit, state.seconds * std::pow(state.error / (kWantedShare * best), 2));
+}
+
+/// From a part of `seconds` of the reference's time to the whole reference.
+[[nodiscard]] Progress referenceProgress(const Progress& progress, const ReferenceState& state, double best,
+                                         double limit, double seconds) {
+    Progress inner;
+    inner.interrupted = progress.interrupted;
+    if (!progress.report) return inner;
+    std::string stage = "reference";
+    if (std::isfinite(state.error))
+        stage += " (its error " + figure(100.0 * state.error) + " %, wanted " +
+                 (best > 0.0 ? figure(100.0 * kWantedShare * best) + " %" : "less") + ")";
+    const double done = state.seconds, whole = std::max(expectedSeconds(state, best, limit), done + seconds);
+    inner.report = [&progress, stage, done, whole, seconds](ProgressReport report) {
+        const double spent = done + std::clamp(report.fraction, 0.0, 1.0) * seconds;
+        report.stage = stage;
+        report.fraction = spent / whole;
+        report.secondsLeft = whole - spent;
+        progress.report(report);
+    };
     return inner;
 }
 
@@ -149,7 +165,8 @@ CompareReference makeReference(const CompareRequest& request, const SceneSource&
         if (reference.goodEnough || left < 0.01 * limit || progress.stopAsked()) break;
         const double more = std::min(left, std::max(state.seconds, request.times.back()));
         const RenderResult result =
-            renderMore(request, scenes(request.settings), runs, store, more, workers, referenceProgress(progress), log);
+            renderMore(request, scenes(request.settings), runs, store, more, workers,
+                       referenceProgress(progress, state, best, limit, more), log);
         reference.image = result.image;
         state.seconds += result.record.seconds;
         state.error = result.record.errorEstimate;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <map>
 
 #include <pellucid/study/record_json.h>
@@ -18,14 +19,21 @@ struct RunTask {
     const CompareMethod* method;
 };
 
+/// Budgets that differ in their twelfth digit only are still two.
+[[nodiscard]] std::string exactFigure(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.12g", value);
+    return text;
+}
+
 [[nodiscard]] std::string keyText(const CompareRequest& request, const CompareMethod& method, const RunKey& key,
                                   const std::string& sceneHash, int width, int height, int threads) {
     std::string settings;
     for (const auto& [name, value] : settingsAsText(method.settings)) settings += name + "=" + value + ";";
     return "pellucid " + request.version + ", scene " + sceneHash + ", method " + methodName(method.method) +
            ", settings " + hashText(settings) + ", " + std::to_string(width) + "x" + std::to_string(height) +
-           ", camera '" + request.camera + "', threads " + std::to_string(threads) + ", budget " + figure(key.budget) +
-           " s, seed " + std::to_string(key.seed);
+           ", camera '" + request.camera + "', threads " + std::to_string(threads) + ", budget " +
+           exactFigure(key.budget) + " s, seed " + std::to_string(key.seed);
 }
 
 [[nodiscard]] RenderRequest renderRequest(const CompareRequest& request, const RunTask& task, int width, int height,
@@ -68,8 +76,9 @@ public:
         Progress inner;
         inner.interrupted = progress_.interrupted;
         if (!progress_.report) return inner;
-        const std::string stage =
-            "run " + std::to_string(number) + " of " + std::to_string(count) + ", " + task.key.name();
+        const std::string stage = "run " + std::to_string(number) + " of " + std::to_string(count) + " (" +
+                                  task.key.label + ", " + figure(task.key.budget) + " s, seed " +
+                                  std::to_string(task.key.seed) + ")";
         inner.report = [this, stage, budget = task.key.budget](const ProgressReport& report) {
             tell(stage, done_ + std::clamp(report.fraction, 0.0, 1.0) * budget, report.samplesPerSecond);
         };

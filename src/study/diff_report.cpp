@@ -9,6 +9,7 @@
 #include <pellucid/base/error.h>
 #include <pellucid/base/nearest_name.h>
 #include <pellucid/study/image_pair.h>
+#include <pellucid/study/reference_variance.h>
 #include <pellucid/study/text_table.h>
 
 namespace pellucid {
@@ -19,14 +20,6 @@ constexpr std::array<std::string_view, 7> kMetricNames{"rmse", "relmse", "relmse
 
 [[nodiscard]] std::array<double, kMetricNames.size()> valuesOf(const Metrics& m) noexcept {
     return {m.rmse, m.relmse, m.relmseTrimmed, m.smape, m.flip, m.bias, static_cast<double>(m.nonfinite)};
-}
-
-/// The channels variance.R, .G, .B, or three times variance.Y; empty when there are none.
-[[nodiscard]] std::optional<std::array<int, 3>> varianceChannels(const Image& image) noexcept {
-    const std::array<int, 3> rgb{image.channel("variance.R"), image.channel("variance.G"), image.channel("variance.B")};
-    if (std::ranges::all_of(rgb, [](int c) { return c >= 0; })) return rgb;
-    if (const int grey = image.channel("variance.Y"); grey >= 0) return std::array{grey, grey, grey};
-    return std::nullopt;
 }
 
 }  // namespace
@@ -42,15 +35,15 @@ double metricByName(const Metrics& metrics, std::string_view name) {
 }
 
 std::optional<double> referenceNoise(const Image& reference) {
-    const auto variance = varianceChannels(reference);
-    if (!variance) return std::nullopt;
+    const ReferenceVariance variance(reference);
+    if (!variance.known()) return std::nullopt;
     const ImagePair pair(reference, reference);
     double noise = 0.0, count = 0.0;
     for (std::size_t pixel = 0; pixel < pair.pixels(); ++pixel)
         for (std::size_t c = 0; c < 3 && pair.counts(pixel); ++c) {
             const auto r = static_cast<double>(pair.reference(pixel, c));
-            const auto v = static_cast<double>(reference.at(pixel, (*variance)[c]));
-            if (!std::isfinite(r) || !std::isfinite(v)) continue;
+            if (!std::isfinite(r)) continue;
+            const double v = variance.at(pixel, c);
             noise += v == 0.0 ? 0.0 : v / (r * r + pair.relativeFloor());
             count += 1.0;
         }

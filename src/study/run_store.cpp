@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -34,20 +35,23 @@ using Json = nlohmann::ordered_json;
     return json;
 }
 
-[[nodiscard]] double numberOr0(const Json& json) { return json.is_number() ? json.get<double>() : 0.0; }
+/// A figure that was not finite is stored as null: it comes back as infinite, never as "no error".
+[[nodiscard]] double numberOrInfinity(const Json& json) {
+    return json.is_number() ? json.get<double>() : std::numeric_limits<double>::infinity();
+}
 
 [[nodiscard]] RunMetrics metricsFrom(const Json& json) {
     RunMetrics metrics;
     metrics.referenceHash = json.at("reference_hash").get<std::string>();
-    metrics.whole = {numberOr0(json.at("rmse")),
-                     numberOr0(json.at("relmse")),
-                     numberOr0(json.at("relmse_trimmed")),
-                     numberOr0(json.at("smape")),
-                     numberOr0(json.at("flip")),
-                     numberOr0(json.at("bias")),
+    metrics.whole = {numberOrInfinity(json.at("rmse")),
+                     numberOrInfinity(json.at("relmse")),
+                     numberOrInfinity(json.at("relmse_trimmed")),
+                     numberOrInfinity(json.at("smape")),
+                     numberOrInfinity(json.at("flip")),
+                     numberOrInfinity(json.at("bias")),
                      json.at("nonfinite").get<std::size_t>()};
     if (json.contains("classes"))
-        for (const auto& [name, value] : json.at("classes").items()) metrics.classRelmse[name] = numberOr0(value);
+        for (const auto& [name, value] : json.at("classes").items()) metrics.classRelmse[name] = numberOrInfinity(value);
     return metrics;
 }
 
@@ -80,7 +84,7 @@ using Json = nlohmann::ordered_json;
     run.image = json.at("image").get<std::string>();
     run.imageHash = json.at("image_hash").get<std::string>();
     run.seconds = json.at("seconds").get<double>();
-    run.errorEstimate = numberOr0(json.at("error_estimate"));
+    run.errorEstimate = numberOrInfinity(json.at("error_estimate"));
     run.iterations = json.at("iterations").get<std::uint32_t>();
     run.samplesPerPixel = json.at("samples_per_pixel").get<std::uint32_t>();
     run.peakRssBytes = json.at("peak_rss_bytes").get<std::uint64_t>();

@@ -179,10 +179,12 @@ double timeToError(std::span<const double> seconds, std::span<const double> relm
 }
 
 double logLogSlope(std::span<const double> seconds, std::span<const double> relmse) noexcept {
-    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, firstX = kNan, firstY = kNan;
     for (std::size_t i = 0; i < seconds.size(); ++i) {
         if (!(seconds[i] > 0.0) || !(relmse[i] > 0.0)) continue;
-        const double lx = std::log(seconds[i]), ly = std::log(relmse[i]);
+        if (n == 0.0) firstX = std::log(seconds[i]), firstY = std::log(relmse[i]);
+        // From the first point on: an error that stays the same has the slope 0 exactly.
+        const double lx = std::log(seconds[i]) - firstX, ly = std::log(relmse[i]) - firstY;
         n += 1.0;
         x += lx;
         y += ly;

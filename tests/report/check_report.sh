@@ -43,11 +43,18 @@ const l = view.left, run = report.curves.find(r => r.method === l.label && r.bud
 found.requests = performance.getEntriesByType("resource").map(r => r.name).filter(n => !/^(data|blob):/.test(n));
 // Zoom and pan by the keyboard move both pictures; the legend's buttons hide a curve and bring it back.
 const keyed = key => document.getElementById("viewer").dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true}));
-keyed("+"); keyed("+"); const zoomed = view.zoom, panned = view.x; keyed("ArrowRight");
-found.zoomed = zoomed > 2 && view.x > panned; keyed("0"); found.reset = view.zoom === 1 && view.x === 0;
+document.getElementById("pixel").textContent = ""; keyed("+"); keyed("+"); const zoomed = view.zoom, panned = view.x; keyed("ArrowRight");
+found.zoomed = zoomed > 2 && view.x > panned; found.keyRead = document.getElementById("pixel").textContent.startsWith("pixel ");
+// The small pictures show the same cut as the large one: the zoomed reference is another picture than the whole one.
+const small = () => Array.from(document.querySelectorAll("#strip canvas"), c => c.toDataURL());
+drawStrip(); const cut = small(); keyed("0"); drawStrip(); const whole = small();
+found.small = whole.length; found.smallFollow = [0, 1, 2].every(i => cut[i] !== whole[i]) && new Set(whole).size === whole.length;  // that of light alone may be black
+found.reset = view.zoom === 1 && view.x === 0;
+document.querySelector("#strip button").click(); found.chosen = document.getElementById("right").value === "reference" && view.right === reference;
 const button = document.querySelector("#legend button"); button.click();
 found.hidden = document.querySelectorAll("#curves path.line").length; button.click();
-found.bars = document.querySelectorAll("#classes rect").length; found.maps = document.querySelectorAll("#maps figure").length;
+const scale = document.getElementById("class-scale"); scale.value = "own"; scale.onchange();
+found.bars = document.querySelectorAll("#classes rect").length; found.maps = document.querySelectorAll("#maps figure").length; found.kinds = document.querySelectorAll("#maps h3").length;
 found.rows = document.querySelectorAll("#figures tbody tr").length; found.plans = document.querySelectorAll("#plans details").length;
 found.commands = document.querySelectorAll("#commands pre").length;
 // Every control has a name that a screen reader can say, and nothing is wider than the page.
@@ -84,6 +91,10 @@ assert found["curves"] == found["methods"] and found["longestCurve"] > 5, "curve
 assert not found["requests"], "the page asked for " + str(found["requests"])
 assert found["sliderMoved"], "the slider did not move"
 assert found["zoomed"] and found["reset"], "zoom and pan do not answer the keyboard"
+assert found["keyRead"], "the keyboard reads no pixel"
+assert found["small"] == found["methods"] + 1 and found["smallFollow"], "the small pictures do not follow zoom and pan"
+assert found["chosen"], "a small picture cannot be chosen"
+assert found["maps"] == 3 * found["methods"] and found["kinds"] == 3, "error, bias or deviation maps are missing"
 assert found["hidden"] == found["methods"] - 1, "the legend hides no curve"
 for part in ("bars", "maps", "rows", "plans", "commands"):
     assert found[part] > 0, part + " are missing"

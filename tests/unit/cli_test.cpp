@@ -228,6 +228,7 @@ TEST_F(Cli, DiffMeasuresEachImageAndGates) {
 TEST_F(Cli, DiffRefusesOtherSizesAndCropsOutside) {
     const std::string a = image("a.pfm", 1.0F), b = image("b.pfm", 1.0F, 8, 8);
     expectError("diff '" + a + "' '" + b + "'", 2, "different sizes");
+    expectError("diff '" + a + "' '" + b + "'", 2, "b.pfm");
     expectError("diff '" + a + "' '" + a + "' --crop 0,0,17,3", 1, "--crop");
     EXPECT_EQ(run("diff '" + a + "' '" + b + "' --crop 2,2,8,8").status, 0);
     expectError("diff '" + a + "' '" + a + "' --map '" + path("no/map.png") + "'", 3, "map.png");

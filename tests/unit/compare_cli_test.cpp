@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <span>
 #include <string>
 
 #include <sys/wait.h>
@@ -16,7 +18,9 @@
 #include <nlohmann/json.hpp>
 
 #include <pellucid/base/error.h>
+#include <pellucid/io/image_file.h>
 #include <pellucid/study/compare.h>
+#include <pellucid/study/diff_report.h>
 #include <pellucid/study/report.h>
 #include <pellucid/study/statistics.h>
 
@@ -64,6 +68,7 @@ TEST(CompareStatistics, ClosedForms) {
     EXPECT_NEAR(adjusted[2], 0.06, 1e-12);
     const std::vector<double> seconds{1, 2, 4, 8}, relmse{0.16, 0.08, 0.04, 0.02};  // 0.16 / t
     EXPECT_NEAR(logLogSlope(seconds, relmse), -1.0, 1e-12);
+    EXPECT_EQ(logLogSlope(seconds, std::vector<double>{0.133, 0.133, 0.133, 0.133}), 0.0);
     EXPECT_NEAR(timeToError(seconds, relmse, std::sqrt(0.05)), 3.2, 1e-12);
     EXPECT_EQ(timeToError(seconds, relmse, 0.5), 1.0);
     EXPECT_TRUE(std::isinf(timeToError(seconds, relmse, 0.01)));
@@ -80,6 +85,28 @@ TEST(CompareStatistics, BiasAndVarianceByHand) {
     EXPECT_DOUBLE_EQ(meanSquaredError(errors, once), 5.0);
     EXPECT_DOUBLE_EQ(errorVariance(errors, once), 2.0);  // s^2 of {1, 3}
     EXPECT_DOUBLE_EQ(biasSquared(errors, once), 3.0);    // 2^2 - 2/2
+}
+
+/// Noise of the colour of the light, a tenth of the radiance in each channel: relative variance 0.01 up to the floor,
+/// whether the layer tells each channel's variance or the luminance's.
+TEST(CompareStatistics, NoiseOfAColouredReference) {
+    const Rgb gold{1.0F, 0.5F, 0.02F};
+    const double luminance = 0.2126 * 1.0 + 0.7152 * 0.5 + 0.0722 * 0.02;
+    const double floor = 0.01 * std::pow((1.0 + 0.5 + 0.02) / 3.0, 2);
+    double expected = 0.0;
+    for (const double r : {1.0, 0.5, 0.02}) expected += 0.01 * r * r / (r * r + floor) / 3.0;
+    Image grey(2, 1, {"R", "G", "B", "variance.Y"}), colours(2, 1, {"R", "G", "B", "variance.R", "variance.G", "variance.B"});
+    for (std::size_t p = 0; p < 2; ++p) {
+        grey.setRgb(p, gold);
+        grey.at(p, 3) = static_cast<float>(0.01 * luminance * luminance);
+        colours.setRgb(p, gold);
+        colours.setRgb(p, 0.01F * gold * gold, 3);
+    }
+    for (const Image& reference : {grey, colours}) {
+        ASSERT_TRUE(referenceNoise(reference).has_value());
+        EXPECT_NEAR(*referenceNoise(reference), expected, 1e-7);
+        EXPECT_NEAR(errorProducts(reference, std::span(&reference, 1), true).referenceNoise, expected, 1e-7);
+    }
 }
 
 TEST(CompareReport, IsOnePageThatAsksForNothing) {
@@ -180,7 +207,54 @@ TEST_F(CompareCli, EndToEndAndAgainFromStoredRuns) {
     const std::string::size_type place = command.find("path,");
     ASSERT_EQ(run(std::string(command).replace(place, 5, "light,path,")), 0) << read(folder_ / "stderr");
     EXPECT_EQ(fs::last_write_time(old), written);
-    EXPECT_EQ(Json::parse(read(study / "curves.json")).size(), 12U);
+    const Json grown = Json::parse(read(study / "curves.json"));
+    ASSERT_EQ(grown.size(), 12U);
+    EXPECT_EQ(grown[0].at("method"), "light");  // in the order of --methods, whatever was finished first
+    EXPECT_EQ(grown[4].at("method"), "path");
+    EXPECT_EQ(grown[8].at("method"), "photon:cache.error=0.3");
+    // Six comparisons: with five seeds a side the smallest p of the family is 6 x 2/252 = 0.048, with four 6 x 2/70.
+    EXPECT_EQ(Json::parse(read(study / "summary.json")).at("seeds_needed"), 5);
+    EXPECT_NE(read(folder_ / "stdout").find("need --seeds 5"), std::string::npos);
+    EXPECT_NE(read(folder_ / "stdout").find("report.html"), std::string::npos);
+}
+
+/// Whatever ends a comparison, each stored run is whole, and going on renders none of them again.
+TEST_F(CompareCli, KilledAndResumed) {
+    const fs::path study = folder_ / "study";
+    const std::string arguments = "'" + scene() + "' -o '" + study.string() +
+                                  "' --methods path --times 0.2 --seeds 6 --size 16x12 --reference-time 0.3 --quiet";
+    std::map<fs::path, fs::file_time_type> finished;
+    for (const char* signal : {"KILL", "INT"}) {
+        const std::string command =
+            std::string("timeout -s ") + signal + " 0.6 '" PELLUCID_BINARY "' compare " + arguments + " >/dev/null 2>&1";
+        static_cast<void>(std::system(command.c_str()));
+        for (const auto& [file, written] : finished) EXPECT_EQ(fs::last_write_time(file), written) << file;
+        if (!fs::exists(study / "runs")) continue;  // the machine is busy: it never got so far
+        for (const fs::directory_entry& entry : fs::directory_iterator(study / "runs")) {
+            if (entry.path().extension() != ".json") continue;
+            const fs::path image = study / Json::parse(read(entry.path())).at("image").get<std::string>();
+            EXPECT_EQ(readImage(image).pixels(), 192U) << image;
+            finished[image] = fs::last_write_time(image);
+        }
+    }
+    ASSERT_EQ(run(arguments), 0) << read(folder_ / "stderr");
+    for (const auto& [file, written] : finished) EXPECT_EQ(fs::last_write_time(file), written) << file;
+    EXPECT_EQ(Json::parse(read(study / "curves.json")).size(), 6U);
+}
+
+/// An error that is no number must not come back as "no error" when the stored runs are read again.
+TEST_F(CompareCli, InfiniteErrorsStayInfinite) {
+    const fs::path reference = folder_ / "black.exr", study = folder_ / "study";
+    writeExr(reference, Image(16, 12, {"R", "G", "B"}), {});
+    const std::string command = "'" + scene() + "' -o '" + study.string() +
+                                "' --methods path --times 0.1,0.10001 --seeds 1 --reference '" + reference.string() + "'";
+    for (int time = 0; time < 2; ++time) {
+        ASSERT_EQ(run(command), 0) << read(folder_ / "stderr");
+        const Json curves = Json::parse(read(study / "curves.json"));
+        ASSERT_EQ(curves.size(), 2U);
+        for (const Json& row : curves) EXPECT_TRUE(row.at("relmse").is_null()) << row;
+        EXPECT_NE(curves[0].at("image"), curves[1].at("image"));  // budgets that print alike are still two
+    }
 }
 
 }  // namespace

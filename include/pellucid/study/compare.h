@@ -3,6 +3,7 @@
 /// is never rendered again, so a comparison can be interrupted, and grow by methods, times and seeds.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -52,8 +53,9 @@ struct LoadedScene {
 using SceneSource = std::function<LoadedScene(const Settings&)>;
 
 struct CompareOutcome {
-    std::string table;         ///< for people
-    bool interrupted = false;  ///< files hold what was done
+    std::string table;                    ///< for people; empty when there was nothing to measure, or to measure with
+    bool interrupted = false;             ///< files hold what was done
+    std::size_t finished = 0, asked = 0;  ///< runs
 };
 
 [[nodiscard]] CompareOutcome compare(const CompareRequest& request, const SceneSource& scenes, const Workers& workers,

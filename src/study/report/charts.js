@@ -53,7 +53,7 @@ function drawCurves() {
   const svg = newSvg("curves", width, height, `${title} against seconds, both axes logarithmic, for ${methods.map(m => m.method).join(", ")}. The table under Figures holds the values.`);
   const shown = methods.filter(m => !hidden.has(m.method)).map(m => ({name: m.method, points: m.points.map(p => ({p, x: p.seconds.value, i: ofPoint(p)})).filter(q => q.i.value > 0)}));
   const runs = ofRun && $("show-runs").checked ? report.curves.filter(r => !hidden.has(r.method) && ofRun(r) > 0) : [];
-  const xs = shown.flatMap(s => s.points.map(q => q.x)), ys = shown.flatMap(s => s.points.flatMap(q => [q.i.value, q.i.low > q.i.value / 20 ? q.i.low : q.i.value, q.i.high || q.i.value])).concat(runs.map(ofRun));
+  const xs = shown.flatMap(s => s.points.map(q => q.x)).concat(runs.map(r => r.seconds)), ys = shown.flatMap(s => s.points.flatMap(q => [q.i.value, q.i.low > q.i.value / 20 ? q.i.low : q.i.value, q.i.high || q.i.value])).concat(runs.map(ofRun));
   if (!xs.length) { svg.append("text").attr("x", width / 2).attr("y", height / 2).attr("text-anchor", "middle").text(methods.some(m => m.points.length) ? "Nothing above zero to draw on logarithmic axes." : "No runs."); return; }
   const x = d3.scaleLog().domain([d3.min(xs) / 1.25, d3.max(xs) * 1.25]).range([box.left, box.right]);
   const y = d3.scaleLog().domain([d3.min(ys) / 1.3, d3.max(ys) * 1.3]).range([box.bottom, box.top]).clamp(true);
@@ -96,10 +96,16 @@ function drawClasses() {
   for (const m of methods) { const p = m.points.find(q => q.budget === budget); if (p) for (const [name, c] of Object.entries(p.classes)) groups.push({method: m.method, name, c}); }
   if (!groups.length) { $("classes").textContent = "The reference has no layers direct, caustic and indirect: give one of this program, or let compare make it."; $("classes-note").hidden = true; return; }
   const names = ["direct", "caustic", "indirect"].filter(n => groups.some(g => g.name === n)), width = chartWidth("classes"), rows = groups.length;
-  const height = rows * 24 + names.length * 30 + 46, left = Math.min(width * .4, 250), x = d3.scaleLinear().domain([0, d3.max(groups, g => Math.max(g.c.relmse.value, g.c.relmse.high || 0)) || 1]).nice().range([left, width - 70]);
+  // One scale for all shows which class the error comes from; one for each class, how the methods stand within it. An interval
+  // may reach far beyond the bars: the scale ends at three times the longest of them.
+  const own = $("class-scale").value === "own", height = rows * 24 + names.length * (own ? 64 : 30) + (own ? 4 : 46), left = Math.min(width * .4, 250);
+  const end = list => Math.min(d3.max(list, g => Math.max(g.c.relmse.value, g.c.relmse.high || 0)), 3 * d3.max(list, g => g.c.relmse.value)) || 1;
+  const scaleOf = list => d3.scaleLinear().domain([0, end(list)]).nice().range([left, width - 70]).clamp(true);
+  const axis = (x, y) => svg.append("g").attr("transform", `translate(0,${y})`).call(d3.axisBottom(x).ticks(width < 500 ? 3 : 6).tickFormat(v => figure(v)));
   const svg = newSvg("classes", width, height, "relMSE by path class: " + groups.map(g => `${g.name}, ${g.method}: ${figure(g.c.relmse.value)}`).join("; "));
-  let top = 4;
+  let top = 4, x = scaleOf(groups);
   for (const name of names) {
+    if (own) x = scaleOf(groups.filter(g => g.name === name));
     svg.append("text").attr("x", 0).attr("y", top + 18).attr("font-weight", 600).text(name); top += 26;
     for (const g of groups.filter(q => q.name === name)) {
       const bias = Math.max(0, g.c.bias2.value || 0), whole = g.c.relmse.value, colour = colourOf(g.method), row = svg.append("g").datum(g);
@@ -111,9 +117,10 @@ function drawClasses() {
       tipFor(row, q => `${q.method}, ${q.name}\nrelMSE ${figure(q.c.relmse.value)}  (${between(q.c.relmse)})\nbias² ${figure(q.c.bias2.value)}  (${between(q.c.bias2)})\nvariance ${figure(q.c.variance.value)}  (${between(q.c.variance)})`);
       top += 24;
     }
+    if (own) { axis(x, top + 4); top += 34; }
     top += 4;
   }
-  svg.append("g").attr("transform", `translate(0,${top + 4})`).call(d3.axisBottom(x).ticks(width < 500 ? 3 : 6).tickFormat(v => figure(v)));
+  if (!own) axis(x, top + 4);
 }
 
 function drawStages() {

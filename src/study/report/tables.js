@@ -18,7 +18,7 @@ const named = m => ({text: m.method, swatch: colourOf(m.method)});
 
 function writeFacts() {
   const r = summary.reference, s = summary;
-  $("facts").textContent = `${s.width}×${s.height}, ${s.seeds} seeds, ${s.times.map(t => figure(t)).join(", ")} s, ${s.threads} threads, pellucid ${s.version}. Reference: ${r.file.split("/").pop()}` +
+  $("facts").textContent = `${s.width}×${s.height}, ${s.seeds} ${s.seeds === 1 ? "seed" : "seeds"}, budgets of ${s.times.map(t => figure(t)).join(", ")} s, ${s.threads} threads, pellucid ${s.version}. Reference: ${r.file.split("/").pop()}` +
     (r.made ? `, made in ${figure(r.seconds)} s` : "") + (r.noise_relmse !== null ? `, its own error ${figure(100 * Math.sqrt(r.noise_relmse), 2)} %` : "") + ".";
   const remarks = [r.remark, s.runs_missing > 0 ? `${s.runs_missing} of ${s.runs + s.runs_missing} runs are missing: the comparison was interrupted. The command under Repeat it goes on from here` : ""].filter(t => t);
   for (const run of report.runs) for (const blind of run.blind_spots || []) { const text = `${run.method} cannot see: ${blind}`; if (!remarks.includes(text)) remarks.push(text); }
@@ -26,12 +26,12 @@ function writeFacts() {
   $("remarks").textContent = remarks.map(t => t.replace(/\.?$/, ".")).join(" ");
 }
 
-// The best at the longest time, and whether it is told apart from the others.
+// The best at the longest time that all have, and whether it is told apart from the others.
 function writeVerdict() {
-  const last = m => m.points[m.points.length - 1], ranked = methods.filter(m => m.points.length).sort((a, b) => last(a).relmse.value - last(b).relmse.value);
-  const box = d3.select("#verdict");
-  if (!ranked.length) return;
-  const best = ranked[0], budget = last(best).budget;
+  const measured = methods.filter(m => m.points.length), box = d3.select("#verdict");
+  const budget = d3.max(summary.times.filter(t => measured.every(m => m.points.some(p => p.budget === t))));  // an interrupted comparison lacks some
+  if (!measured.length || budget === undefined) { box.append("p").text("No time has runs of every method yet."); return; }
+  const last = m => m.points.find(p => p.budget === budget), ranked = measured.sort((a, b) => last(a).relmse.value - last(b).relmse.value), best = ranked[0];
   box.append("p").text(`At ${figure(budget)} s ${best.method} has the smallest error: ${figure(100 * Math.sqrt(last(best).relmse.value))} % (relMSE ${figure(last(best).relmse.value)}, of it bias² ${figure(last(best).bias2.value)} and variance ${figure(last(best).variance.value)}).`);
   for (const other of ranked.slice(1)) {
     const pair = summary.comparisons.find(c => c.budget === budget && [c.a, c.b].includes(best.method) && [c.a, c.b].includes(other.method));
@@ -41,10 +41,12 @@ function writeVerdict() {
     box.append("p").text(`${other.method}: ${figure(100 * Math.sqrt(last(other).relmse.value))} %, ${figure(value)} times the relMSE${ends}; ` +
       (pair.significant ? `told apart, p = ${figure(pair.p_adjusted, 2)} after Holm.` : `not told apart with ${last(other).seeds} seeds (p = ${figure(pair.p_adjusted, 2)} after Holm).`));
   }
+  const fewest = d3.min(methods.flatMap(m => m.points), p => p.seeds), needed = summary.seeds_needed || 0;
+  if (fewest < needed) box.append("p").attr("class", "hint").text(`With ${fewest} ${fewest === 1 ? "seed" : "seeds"} no difference can be told from chance: ${summary.comparisons.length} comparisons need --seeds ${needed}.`);
 }
 
 function writeFigures() {
-  addTable("figures", ["method", "time, s", "seconds", "relMSE", "bias²", "variance", "trimmed", "RMSE", "SMAPE", "FLIP", "mean bias", "efficiency", "peak MB"],
+  addTable("figures", ["method", "budget", "seconds", "relMSE", "bias²", "variance", "trimmed", "RMSE", "SMAPE", "FLIP", "mean bias", "efficiency", "peak MB"],
     methods.flatMap(m => m.points.map(p => [named(m), figure(p.budget), figure(p.seconds.value), withRange(p.relmse), withRange(p.bias2), withRange(p.variance), withRange(p.relmse_trimmed),
       withRange(p.rmse), withRange(p.smape), withRange(p.flip), withRange(p.bias), withRange(p.efficiency), figure(p.peak_rss_bytes / 1e6)])));
   const time = t => ({text: t.status === "reached" ? figure(t.seconds) : t.status === "at the first budget or before" ? "≤ " + figure(t.seconds) : t.status === "not reached" && t.low !== null ? "> " + figure(t.low) : t.status,
@@ -65,10 +67,13 @@ function renderCommand(m) {
   return words.map(w => quoted(String(w))).join(" ");
 }
 
+// A setting's text; numbers with more than nine digits are cut to six, the files keep them all.
+const shortened = text => text.length > 9 && isFinite(text) ? figure(+text, 6) : text;
+
 function writeSettings() {
   const first = methods.map(m => report.runs.find(r => r.method === m.method)), names = [...new Set(first.flatMap(r => r ? Object.keys(r.settings) : []))];
   addTable("settings", ["setting"].concat(methods.map(m => m.method)), names.map(n => [n].concat(first.map((r, i) => {
-    const value = r ? r.settings[n] : "–", differs = report.runs.some(q => q.method === methods[i].method && q.settings[n] !== value);
+    const value = r ? shortened(r.settings[n]) : "–", differs = report.runs.some(q => q.method === methods[i].method && q.settings[n] !== r.settings[n]);
     return {text: value + (n in methods[i].settings ? " (set)" : ""), small: differs ? "differs between runs" : ""};
   }))), true);
   for (const [i, run] of report.runs.entries()) {
@@ -89,7 +94,7 @@ d3.select("#metric").selectAll("option").data(metrics).enter().append("option").
 d3.select("#class-budget").selectAll("option").data(summary.times.slice().reverse()).enter().append("option").attr("value", t => t).text(t => figure(t) + " s");
 writeFacts(); writeVerdict(); drawLegend(); writeFigures(); writeSettings(); startViewer(); startMaps();
 function redraw() { drawCurves(); drawClasses(); drawStages(); }
-$("metric").onchange = $("show-runs").onchange = drawCurves; $("class-budget").onchange = drawClasses;
+$("metric").onchange = $("show-runs").onchange = drawCurves; $("class-budget").onchange = $("class-scale").onchange = drawClasses;
 let resizing; addEventListener("resize", () => { clearTimeout(resizing); resizing = setTimeout(redraw, 120); });
 addEventListener("beforeprint", () => { for (const d of document.querySelectorAll("details")) d.open = true; });
 redraw();

@@ -64,7 +64,7 @@ function developed(entry, mode, exposure) {
   return canvas;
 }
 
-const view = {split: .5, zoom: 1, x: 0, y: 0, exposure: 0, mode: "colour", left: null, right: null, cursor: null};
+const view = {split: .5, zoom: 1, x: 0, y: 0, exposure: 0, mode: "colour", left: null, right: null, cursor: null, aimed: false, stripAsked: false};
 const canvas = $("canvas"), viewer = $("viewer");
 const entryFor = label => pictures.find(p => p.label === label && (label === "reference" || p.budget === +$("budget").value));
 const nameOf = e => e.label === "reference" ? "reference" : `${e.label}, ${figure(e.budget)} s`;
@@ -84,7 +84,31 @@ function draw() {
   }
   $("divider").style.left = 100 * view.split + "%"; $("divider").setAttribute("aria-valuenow", Math.round(100 * view.split));
   $("label-left").textContent = nameOf(view.left); $("label-right").textContent = nameOf(view.right);
+  if (view.aimed) {  // the pixel that the keyboard reads
+    const x = (view.cursor.x - view.x) * scale, y = (view.cursor.y - view.y) * scale, arm = 7 * (window.devicePixelRatio || 1);
+    for (const [colour, width] of [["#000", 4], ["#fff", 1.5]]) {
+      context.beginPath(); context.moveTo(x - arm, y); context.lineTo(x + arm, y); context.moveTo(x, y - arm); context.lineTo(x, y + arm);
+      context.strokeStyle = colour; context.lineWidth = width; context.stroke();
+    }
+  }
+  viewer.style.touchAction = view.zoom > 1 ? "none" : "pan-y";  // a finger scrolls the page until there is something to pan
+  if (!view.stripAsked) { view.stripAsked = true; requestAnimationFrame(drawStrip); }
   tellPixel();
+}
+// The small pictures beside each other: the same cut of each, so zoom and pan move them all.
+function drawStrip() {
+  view.stripAsked = false;
+  d3.select("#strip").selectAll("canvas").each(function () {
+    const entry = entryFor(d3.select(this).datum()), context = this.getContext("2d");
+    d3.select(this.parentNode).classed("shown", entry === view.left || entry === view.right).style("display", entry ? null : "none");
+    if (!entry) return;
+    d3.select(this.parentNode).select("span").text(nameOf(entry));
+    this.width = 320; this.height = Math.max(1, Math.round(320 * entry.height / entry.width));
+    const scale = this.width / entry.width * view.zoom;
+    context.imageSmoothingEnabled = scale < 1.5;
+    context.setTransform(scale, 0, 0, scale, -view.x * scale, -view.y * scale);
+    context.drawImage(developed(entry, view.mode, view.exposure), 0, 0);
+  });
 }
 function resize() {
   if (!view.left) return;
@@ -105,6 +129,8 @@ function zoomAt(point, factor) {
   view.x = point.x - (point.x - view.x) * before / view.zoom; view.y = point.y - (point.y - view.y) * before / view.zoom;
   clampView(); draw();
 }
+// The keyboard has no pointer: it reads the pixel in the middle of the view.
+function aim() { view.aimed = true; view.cursor = {x: view.x + view.left.width / view.zoom / 2, y: view.y + view.left.height / view.zoom / 2}; draw(); }
 // Digits that the packing keeps: 7 of float32, 5 with 16 bits of mantissa, 4 of a half.
 const digitsOf = entry => ({4: 7, 3: 5, 2: 4})[entry.bytes];
 function tellPixel() {
@@ -135,9 +161,12 @@ function startViewer() {
   for (const id of ["left", "right", "budget"]) $(id).onchange = choose;
   $("mode").onchange = () => { view.mode = $("mode").value; draw(); };
   $("exposure").oninput = () => { view.exposure = +$("exposure").value; $("exposure-value").textContent = view.exposure + " EV"; draw(); };
-  const reset = () => { view.zoom = 1; view.x = view.y = 0; view.split = .5; view.exposure = 0; $("exposure").value = 0; $("exposure-value").textContent = "0 EV"; draw(); };
+  const reset = () => { view.aimed = false; view.zoom = 1; view.x = view.y = 0; view.split = .5; view.exposure = 0; $("exposure").value = 0; $("exposure-value").textContent = "0 EV"; draw(); };
   $("reset").onclick = reset;
   listen(reset);
+  const small = d3.select("#strip").selectAll("button").data(labels).enter().append("button").attr("type", "button").attr("aria-label", l => `Put ${l} to the right`);
+  small.append("canvas").attr("aria-hidden", "true"); small.append("span").text(l => l);
+  small.on("click", function () { $("right").value = d3.select(this).datum(); choose(); });
   viewer.style.maxWidth = `calc(82vh * ${reference.width / reference.height})`;
   new ResizeObserver(() => requestAnimationFrame(resize)).observe(viewer);  // not inside of the observation: it would loop
   choose();
@@ -162,7 +191,7 @@ function listen(reset) {
       pinch = distance;
     }
     view.cursor = toPicture(event);
-    last ? draw() : tellPixel();
+    last || view.aimed ? (view.aimed = false, draw()) : tellPixel();
   });
   for (const end of ["pointerup", "pointercancel"]) viewer.addEventListener(end, event => { pointers.delete(event.pointerId); pinch = 0; });
   viewer.addEventListener("wheel", event => { event.preventDefault(); zoomAt(toPicture(event), 2 ** (-event.deltaY / 300)); }, {passive: false});
@@ -177,9 +206,9 @@ function listen(reset) {
     if (moves[event.key]) { view.x += moves[event.key][0]; view.y += moves[event.key][1]; clampView(); draw(); }
     else if (event.key === "+" || event.key === "=") zoomAt(middle, 1.5);
     else if (event.key === "-") zoomAt(middle, 1 / 1.5);
-    else if (event.key === "0") reset();
+    else if (event.key === "0") { reset(); event.preventDefault(); return; }
     else return;
-    event.preventDefault();
+    aim(); event.preventDefault();
   });
 }
 
@@ -194,31 +223,42 @@ function drawMap(map, canvas, largest) {
   context.putImageData(image, 0, 0);
 }
 // The size that 99 % of all maps' values stay below, as a power of ten.
-function startScale() {
+function startScale(shown) {
   const sizes = [];
-  for (const m of maps) { const v = decode(m); for (let i = 0; i < v.length; i += 17) if (isFinite(v[i])) sizes.push(Math.abs(v[i])); }
+  for (const m of shown) { const v = decode(m); for (let i = 0; i < v.length; i += 17) if (isFinite(v[i])) sizes.push(Math.abs(v[i])); }
   return Math.log10(Math.max(d3.quantile(sizes.sort(d3.ascending), .99) || 0, 1e-3));
 }
+// The error of one picture in the page, made from its pixels.
+function errorMap(picture) {
+  const v = decode(picture), values = new Float32Array(v.length / 3);
+  for (let i = 0; i < values.length; ++i) values[i] = relativeError(v, 3 * i);
+  return {kind: "error", label: picture.label, budget: picture.budget, seed: picture.seed, width: picture.width, height: picture.height, halved: picture.halved, values};
+}
 function startMaps() {
-  if (!maps.length) { $("maps").textContent = "Maps need at least two seeds."; $("map-scale").disabled = true; return; }
-  const figures = d3.select("#maps").selectAll("figure").data(maps).enter().append("figure");
-  const title = m => (m.kind === "bias" ? "bias, " : "deviation, ") + m.label + ", " + figure(m.budget) + " s";
+  const longest = d3.max(pictures, p => p.budget), errors = pictures.filter(p => p !== reference && p.budget === longest).map(errorMap), shown = errors.concat(maps);
+  if (!shown.length) { $("maps").textContent = "There are no pictures to measure."; $("map-scale").disabled = true; return; }
+  const kinds = ["error", "bias", "deviation"].filter(k => shown.some(m => m.kind === k));
+  const rows = d3.select("#maps").selectAll("div").data(kinds).enter().append("div");
+  rows.append("h3").text(k => ({error: "Error", bias: "Bias", deviation: "Deviation"})[k]);
+  const figures = rows.append("div").attr("class", "maps").selectAll("figure").data(k => shown.filter(m => m.kind === k)).enter().append("figure");
+  const title = m => `${m.kind}, ${m.label}, ${figure(m.budget)} s` + (m.kind === "error" ? `, seed ${m.seed}` : "");
+  if (!maps.length) d3.select("#maps").append("p").attr("class", "hint").text("Maps of bias and deviation need at least two seeds.");
   figures.append("canvas").attr("role", "img").attr("aria-label", title).on("mousemove", function () {
     const map = d3.select(this).datum(), box = this.getBoundingClientRect(), x = Math.floor((d3.event.clientX - box.left) / box.width * map.width), y = Math.floor((d3.event.clientY - box.top) / box.height * map.height);
     showTip(d3.event, `pixel ${x},${y}${map.halved ? " of the halved map" : ""}\n${map.kind} ${figure(decode(map)[y * map.width + x])}`);
   }).on("mouseleave", () => tip.style("display", "none"));
-  figures.append("figcaption").text(title);
+  figures.append("figcaption").text(m => title(m).slice(m.kind.length + 2));
   const scale = d3.select("#maps").append("div").attr("class", "scale");
-  for (const [kind, colours] of [["bias", signed], ["deviation", magma]]) {
-    const line = scale.append("span"); line.append("span").text(`${kind}: `); line.append("span").attr("class", "low-" + kind);
+  for (const [kind, colours] of [["bias", signed], ["error and deviation", magma]]) {
+    const line = scale.append("span"); line.append("span").text(`${kind}: `); line.append("span").attr("class", "low-" + kind.split(" ")[0]);
     const strip = line.append("canvas").attr("width", 256).attr("height", 1).attr("aria-hidden", "true").node(), context = strip.getContext("2d"), image = context.createImageData(256, 1);
     for (let i = 0; i < 256; ++i) image.data.set([colours[3 * i], colours[3 * i + 1], colours[3 * i + 2], 255], 4 * i);
-    context.putImageData(image, 0, 0); line.append("span").attr("class", "high-" + kind);
+    context.putImageData(image, 0, 0); line.append("span").attr("class", "high-" + kind.split(" ")[0]);
   }
   const update = () => {
     const largest = 10 ** +$("map-scale").value; $("map-scale-value").textContent = "±" + figure(largest, 2);
     figures.select("canvas").each(function (m) { drawMap(m, this, largest); });
-    d3.select(".low-bias").text("−" + figure(largest, 2)); d3.select(".high-bias").text("+" + figure(largest, 2)); d3.select(".low-deviation").text("0"); d3.select(".high-deviation").text(figure(largest, 2));
+    d3.select(".low-bias").text("−" + figure(largest, 2)); d3.select(".high-bias").text("+" + figure(largest, 2)); d3.select(".low-error").text("0"); d3.select(".high-error").text(figure(largest, 2));
   };
-  $("map-scale").value = startScale().toFixed(1); $("map-scale").oninput = update; update();
+  $("map-scale").value = startScale(shown).toFixed(1); $("map-scale").oninput = update; update();
 }
