@@ -1,7 +1,8 @@
 /// Runs a fuzz target without libFuzzer, for the default tests and any compiler: every seed as it is, then with changes
 /// that a fixed key draws (bytes flipped, set, cut out, repeated, taken from another seed), so that each run tries the same.
-/// usage: TARGET_replay FOLDER CHANGES; the file that breaks the target stays as crash-input in the working folder
+/// usage: TARGET_replay FOLDER CHANGES; the input that breaks the target is left as crash-input in the working folder
 #include <algorithm>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -10,6 +11,9 @@
 #include <fstream>
 #include <iterator>
 #include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <pellucid/math/hash.h>
 
@@ -63,8 +67,17 @@ void change(Bytes& bytes, const std::vector<Bytes>& seeds, Numbers& random) {
     }
 }
 
+const Bytes* running = nullptr;  ///< for the handler, which may call little more than write()
+
+void keepInput(int signal) {
+    const int file = open("crash-input", O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (file >= 0 && running != nullptr && write(file, running->data(), running->size()) >= 0) (void)close(file);
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+}
+
 void run(const Bytes& bytes) {
-    std::ofstream("crash-input", std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    running = &bytes;
     (void)LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
 }
 
@@ -81,6 +94,7 @@ int main(int count, char** arguments) {
         seeds.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
     }
     if (seeds.empty()) return std::fprintf(stderr, "no seeds in %s\n", arguments[1]), 1;
+    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE}) std::signal(signal, keepInput);
     const int changes = std::atoi(arguments[2]);
     Numbers random(1);
     for (const Bytes& seed : seeds) {
@@ -91,7 +105,6 @@ int main(int count, char** arguments) {
             run(bytes);
         }
     }
-    std::filesystem::remove("crash-input");
     std::printf("%zu seeds, %zu inputs\n", seeds.size(), seeds.size() * static_cast<std::size_t>(changes + 1));
     return 0;
 }

@@ -21,7 +21,7 @@ inline void require(bool condition) {
 class ScratchFile {
 public:
     explicit ScratchFile(const std::string& name)
-        : folder_(std::filesystem::temp_directory_path() / ("pellucid-fuzz-" + std::to_string(getpid()))),
+        : folder_(place() / ("pellucid-fuzz-" + std::to_string(getpid()))),
           file_(folder_ / name) {
         std::filesystem::create_directories(file_.parent_path());
     }
@@ -39,6 +39,11 @@ public:
     [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
 
 private:
+    /// In memory where that can be had: a disk would be all that is tested.
+    [[nodiscard]] static std::filesystem::path place() {
+        const std::filesystem::path memory("/dev/shm");
+        return access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
+    }
     std::filesystem::path folder_, file_;
 };
 
