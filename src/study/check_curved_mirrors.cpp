@@ -34,7 +34,7 @@ std::vector<Finding> parabola(const CheckContext& context) {
                      k = 1.0 + (x * x + y * y) / (4.0 * f * f);
         return intensity / (f * f * k * k);
     });
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              expected,
                              kPiD / kRho,
@@ -124,7 +124,7 @@ std::vector<Finding> nephroidFlux(const CheckContext& context) {
         const double length = glm::length(glm::dvec2(x, y) - c.radius * glm::dvec2(std::cos(phi), std::sin(phi)));
         return c.irradiance * std::sin(c.slant) / std::fabs(1.0 - 2.0 * length / (c.radius * std::cos(phi)));
     });
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              expected,
                              kPiD / kRho,

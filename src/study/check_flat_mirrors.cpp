@@ -33,7 +33,7 @@ std::vector<Finding> pointInMirror(const CheckContext& context) {
     SceneBuilder b = floorAndMirror();
     b.point({0.4, -0.2, 1.0}, 2.0);
     const double image = overPatch([](const glm::dvec3& p) { return pointIrradiance(p, kUp, {1.6, -0.2, 1.0}, 2.0); });
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              image,
                              kPiD / kRho,
@@ -50,7 +50,7 @@ std::vector<Finding> lampInMirror(const CheckContext& context) {
     const std::array<glm::dvec3, 4> image{
         glm::dvec3(2.0, -0.7, 0.8), {2.0, 0.7, 0.8}, {1.05, 0.7, 0.8}, {1.05, -0.7, 0.8}};
     const double expected = 5.0 * overPatch([&](const glm::dvec3& p) { return polygonIrradiance(p, kUp, image); });
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              expected,
                              kPiD / kRho,
@@ -85,7 +85,7 @@ std::vector<Finding> twoMirrors(const CheckContext& context) {
             }
         return sum;
     };
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              meanOverSquare(e, 8),
                              kPiD / kRho,
@@ -105,7 +105,7 @@ std::vector<Finding> glowingMirrors(const CheckContext& context) {
         b.square({0, 0, 0}, {0, 0, 1}, 1.0, m);
         b.square({0, 0, 1}, {0, 0, -1}, 1.0, m);
         b.view(glm::dvec3(0.0), kUp, 1.0, 0.5);
-        auto found = measureByAll(context, {b.description(),
+        auto found = measure(context, {b.description(),
                                        {},
                                        1.0 / (1.0 - static_cast<double>(r)),
                                        1.0,
@@ -130,7 +130,7 @@ std::vector<Finding> cornerCube(const CheckContext& context) {
     b.square(axis * 6.0, -axis, 3.0, lamp(3.0F));
     b.view(axis * 0.5, axis, 0.5, 3.0);
     const double expected = 3.0 * schlick(axis.x, f0) * schlick(axis.y, f0) * schlick(axis.z, f0);
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              expected,
                              1.0,

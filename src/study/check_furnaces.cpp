@@ -41,7 +41,7 @@ std::vector<Finding> furnace(const CheckContext& context) {
     std::vector<Finding> all;
     for (const float rho : {0.2F, 0.5F, 0.8F}) {
         SceneBuilder b = closedBox(rho, 1.0F);
-        auto found = measureByAll(context, {b.description(),
+        auto found = measure(context, {b.description(),
                                        {},
                                        1.0 / (1.0 - static_cast<double>(rho)),
                                        1.0,
@@ -82,7 +82,7 @@ std::vector<Finding> integratingSphere(const CheckContext& context) {
     b.point({0.4, 0.1, -0.2}, intensity);
     const glm::dvec3 wall = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));
     b.view(wall, -wall, 0.4, 0.3);
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              flux * rho / (area * (1.0 - rho)),
                              kPiD / rho,
@@ -107,7 +107,7 @@ std::vector<Finding> parallelPlates(const CheckContext& context) {
         b.quad({-1, 1, 0}, {2, 0, 0}, {0, 0, 1}, wall);
         b.view({0.1, 0.2, lower ? 0.0 : 1.0}, {0, 0, lower ? 1.0 : -1.0}, 1.0, 0.5);
         const double expected = lower ? (e1 + rho1 * e2) / (1.0 - rho1 * rho2) : (e2 + rho2 * e1) / (1.0 - rho1 * rho2);
-        auto found = measureByAll(context, {b.description(),
+        auto found = measure(context, {b.description(),
                                        {},
                                        expected,
                                        1.0,
@@ -133,7 +133,7 @@ std::vector<Finding> concentricSpheres(const CheckContext& context) {
         const double f21 = a1 / a2;
         // L1 = 1 + rho1 L2, L2 = rho2 (F21 L1 + F22 L2)
         const double l2 = rho2 * f21 / (1.0 - rho2 * (1.0 - f21) - rho1 * rho2 * f21);
-        auto found = measureByAll(context, {b.description(),
+        auto found = measure(context, {b.description(),
                                        {},
                                        inner ? 1.0 + rho1 * l2 : l2,
                                        1.0,

@@ -108,7 +108,7 @@ std::vector<Finding> ballLens(const CheckContext& context) {
     b.view(middle, kUp, patch, 0.5);
     const double expected = meanOverSquare(
         [&](double u, double v) { return irradianceAt(std::hypot(middle.x + patch * (u - 0.5), patch * (v - 0.5))); });
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              expected,
                              kPiD / kRho,
@@ -170,7 +170,7 @@ std::vector<Finding> lampInGlass(const CheckContext& context) {
     const double expected = meanOverSquare([&](double u, double v) {
         return pointIrradiance({patch * (u - 0.5), patch * (v - 0.5), 0}, kUp, centre, flux / (4.0 * kPiD));
     });
-    auto all = measureByAll(context, {scene.description(),
+    auto all = measure(context, {scene.description(),
                                  {},
                                  expected,
                                  kPiD / kRho,
@@ -184,7 +184,7 @@ std::vector<Finding> lampInGlass(const CheckContext& context) {
     seen.sphere(centre, 0.1, 24, lamp(static_cast<float>(radiance)), false);
     seen.sphere(centre, b, 96, glass(static_cast<float>(n)), true);
     seen.view(centre + b * kUp, kUp, 0.02, 0.5);
-    auto radial = measureByAll(context, {seen.description(),
+    auto radial = measure(context, {seen.description(),
                                     {},
                                     radiance * (1.0 - fresnel(1.0, n)) / (n * n),
                                     1.0,

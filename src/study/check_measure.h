@@ -66,7 +66,8 @@ struct Rendered {
 [[nodiscard]] std::vector<Finding> measure(const CheckContext& context, Rendered what);
 
 /// The same by every method: bidirectional paths and the reference (paths and light tracing by class) join those listed,
-/// under the claims of the first unbiased one, with a fourth of its samples and so coarser intervals.
+/// under the claims of the first unbiased one, with a fourth of its samples and so coarser intervals. For scenes whose lamps
+/// are seen straight: of caustics of points bidirectional paths make too noisy a figure.
 [[nodiscard]] std::vector<Finding> measureByAll(const CheckContext& context, Rendered what);
 
 /// One render of a scene that stands already.

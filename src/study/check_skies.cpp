@@ -40,7 +40,7 @@ std::vector<Finding> cornerEmits(const CheckContext& context) {
     std::vector<Finding> all;
     for (const double x : {0.1, 0.5, 2.0}) {
         SceneBuilder b = corner(x, lamp(1.0F));
-        auto found = measureByAll(context, {b.description(),
+        auto found = measure(context, {b.description(),
                                        {},
                                        wallFactorOver(x),
                                        1.0 / kRho,
@@ -62,7 +62,7 @@ std::vector<Finding> cornerLit(const CheckContext& context) {
         Settings settings = smallSettings();
         settings.gatherRays = 4096;  // the patch has room for one or two records
         auto found =
-            measureByAll(context, {b.description(),
+            measure(context, {b.description(),
                               {},
                               wallFactorOver(x),
                               kPiD / (kRho * 0.8),
@@ -120,7 +120,7 @@ std::vector<Finding> gradients(const CheckContext& context) {
     SceneBuilder b;
     b.square(glm::dvec3(0.0), normal, 0.5, lambert(static_cast<float>(kRho)));
     b.view(glm::dvec3(0.0), normal, 0.5, 1.0);
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              environmentMap(512, 256, sky),
                              expected,
                              kPiD / kRho,

@@ -28,7 +28,7 @@ void append(std::vector<Finding>& to, std::vector<Finding> from) { to.insert(to.
     b.view(glm::dvec3(0.0), {std::sin(angle), 0, std::cos(angle)}, 0.5, 2.0);
     const double expected =
         slabTransmittance(std::cos(angle), static_cast<double>(ior), static_cast<double>(absorption) * thickness);
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              expected,
                              1.0,
@@ -61,7 +61,7 @@ std::vector<Finding> sunThroughSlab(const CheckContext& context) {
     b.box({-1, -1, 0.5}, {1, 1, 0.7}, glass(1.5F));
     b.sun({0, 0, -1}, 3.0);
     b.view(glm::dvec3(0.0), kUp, 0.6, 0.3);
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              3.0 * slabTransmittance(1.0, 1.5),
                              kPiD / kRho,
@@ -98,7 +98,7 @@ std::vector<Finding> pointThroughSlab(const CheckContext& context) {
     b.view(middle, kUp, patch, 0.2);
     const double expected = meanOverSquare(
         [&](double u, double v) { return irradianceAt(std::hypot(middle.x + patch * (u - 0.5), patch * (v - 0.5))); });
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              expected,
                              kPiD / kRho,
@@ -126,7 +126,7 @@ std::vector<Finding> totalReflectionPrism(const CheckContext& context) {
     seen.mesh(prism(), glass(1.5F));
     seen.square({-1.0, 0, 0.4}, {1, 0, 0}, 0.9, lamp(1.0F));
     seen.view({0.4, 0, 0}, {0, 0, -1}, 0.3, 0.5);
-    std::vector<Finding> all = measureByAll(context, {seen.description(),
+    std::vector<Finding> all = measure(context, {seen.description(),
                                                  {},
                                                  expected,
                                                  1.0,
@@ -140,7 +140,7 @@ std::vector<Finding> totalReflectionPrism(const CheckContext& context) {
     lit.sun({0, 0, 1}, 3.0);
     lit.view({-0.5, 0, 0.4}, {1, 0, 0}, 0.3, 0.3);
     append(all,
-           measureByAll(context, {lit.description(),
+           measure(context, {lit.description(),
                              {},
                              3.0 * expected,
                              kPiD / kRho,
@@ -158,7 +158,7 @@ std::vector<Finding> lightPipe(const CheckContext& context) {
     b.square({0, 0, -0.05}, kUp, 1.0, lamp(1.0F));
     const double angle = 30.0 * kPiD / 180.0;
     b.view({0, 0, 2}, {std::sin(angle), 0, std::cos(angle)}, 0.15, 0.5);
-    return measureByAll(context, {b.description(),
+    return measure(context, {b.description(),
                              {},
                              slabTransmittance(std::cos(angle), 1.5),
                              1.0,

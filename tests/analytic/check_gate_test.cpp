@@ -39,7 +39,7 @@ const glm::dvec3 kUp(0, 0, 1);
 
 TEST(CheckGate, SeesEnergyThatIsLostOrMade) {
     const Workers workers(2);
-    const By path{Method::Path, 128, 0.0, 0.03}, photon{Method::Photon, 1, 0.01, 0.04};
+    const By path{Method::Path, 128, 0.0, 0.03}, photon{Method::Photon, 4, 0.01, 0.03};
     EXPECT_TRUE(holds(room(workers, path, 1.0F, 0)));
     EXPECT_TRUE(holds(room(workers, photon, 1.0F, 0)));
     EXPECT_FALSE(holds(room(workers, path, 1.05F, 0)));    // 5 % too bright
@@ -55,13 +55,13 @@ TEST(CheckGate, SeesEnergyThatIsLostOrMade) {
     b.sun({0, 0, -1}, 3.0);
     b.view(glm::dvec3(0.0), kUp, 0.8, 0.3);
     return measure({workers, 0}, {b.description(), {}, 3.0 * slabTransmittance(1.0, 1.5), kPiD / 0.5, "irradiance",
-                                  {{Method::Photon, 4, 0.005, 0.03, "caustic"}}, 8, smallSettings()});
+                                  {{Method::Photon, 16, 0.005, 0.02, "caustic"}}, 16, smallSettings()});
 }
 
 TEST(CheckGate, SeesCausticsThatAreWrong) {
     const Workers workers(2);
     EXPECT_TRUE(holds(slab(workers, 1.5F, 1.0)));
-    EXPECT_FALSE(holds(slab(workers, 1.8F, 1.0)));  // 8 % too little gets through
+    EXPECT_FALSE(holds(slab(workers, 1.6F, 1.0)));  // 2.4 % too little gets through
     EXPECT_FALSE(holds(slab(workers, 1.5F, 0.38))); // a rim without caustic, 10 % of the patch
 }
 
