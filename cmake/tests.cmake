@@ -54,3 +54,23 @@ if(TARGET pellucid_cli)
                                  ${PROJECT_SOURCE_DIR}/scenes/ring.glb 12)
     set_tests_properties(faults PROPERTIES LABELS faults TIMEOUT 600)
 endif()
+
+# The fuzz targets without libFuzzer: their seeds, and changes of them that are the same each time. `./run fuzz` searches.
+file(GLOB sources CONFIGURE_DEPENDS tests/fuzz/*_fuzz.cpp)
+foreach(source ${sources})
+    cmake_path(GET source STEM target)
+    string(REGEX REPLACE "_fuzz$" "" name ${target})
+    add_executable(${name}_replay ${source} tests/fuzz/replay.cpp)
+    set_target_properties(${name}_replay PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz)
+    target_link_libraries(${name}_replay PRIVATE pellucid)
+    pellucid_configure(${name}_replay)
+    target_link_options(${name}_replay PRIVATE $<$<BOOL:${PELLUCID_LTO}>:-fno-lto>)
+    file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz/${name})
+    set(changes 1000)
+    if(name STREQUAL "environment") # images go through a library with threads of its own
+        set(changes 200)
+    endif()
+    add_test(NAME fuzz.${name} COMMAND ${name}_replay ${PROJECT_SOURCE_DIR}/tests/fuzz/seeds/${name} ${changes}
+             WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz/${name})
+    set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT 600)
+endforeach()

@@ -301,12 +301,13 @@ struct Parser {
         CLI::App* command = app.add_subcommand("check", "the numerical suite: closed forms, extremes, invariants");
         command->add_option("--filter", check.filter, "only cases with this in their name")->type_name("NAME");
         CLI::Option* json = command->add_flag("--json", check.json, "for programs");
-        command->add_flag("--markdown", check.markdown, "the page docs/validation.md")->excludes(json);
+        CLI::Option* markdown = command->add_flag("--markdown", check.markdown, "the page docs/validation.md")->excludes(json);
         CLI::Option* quick = command->add_flag("--quick", check.quick, "leave out the slow cases");
         command
             ->add_flag("--sweeps", check.sweeps,
                        "instead of the cases, the sweeps of stiffness: error and time over decades of a dial")
             ->excludes(quick);
+        command->add_flag("--list", check.list, "the names of the cases and what each guards; nothing is run")->excludes(json)->excludes(markdown);
         command->add_option("--plot", check.plot, "draw the sweeps of --sweeps or --markdown")->type_name("OUT.svg");
         command->add_option("--threads", check.threads, "worker threads; 0: all. No figure depends on it")
             ->check(CLI::Range(0, 1024))

@@ -90,6 +90,7 @@ struct TuneArguments {
 struct CheckArguments {
     std::string filter;
     bool json = false, markdown = false, quick = false, quiet = false;
+    bool list = false;    ///< names and what they guard, nothing is run
     bool sweeps = false;  ///< the sweeps of stiffness instead of the cases
     std::string plot;     ///< SVG of the sweeps; empty: none
     int threads = 0;

@@ -24,14 +24,31 @@ namespace {
     });
     if (sweeps.empty())
         throw Error(ErrorKind::Usage, "no sweep has '" + arguments.filter + "' in its name", "--filter",
-                    "run --sweeps without --filter to see all names");
+                    "--sweeps --list shows all names");
     if (!arguments.plot.empty()) writeFile(arguments.plot, sweepsSvg(sweeps));
     return sweeps;
+}
+
+/// One line a case; those that --quick leaves out say so.
+[[nodiscard]] std::string listed(const std::vector<const CheckCase*>& cases) {
+    TextTable table({"case", "group", "", "guards"});
+    for (const CheckCase* c : cases) table.add({c->name, std::string(groupName(c->group)), c->quick ? "" : "slow", c->guards});
+    return table.text();
+}
+[[nodiscard]] std::string listedSweeps(std::string_view filter) {
+    std::string text;
+    for (const std::string_view name : sweepNames())
+        if (name.find(filter) != std::string_view::npos) text += std::string(name) + "\n";
+    return text;
 }
 
 }  // namespace
 
 int runCheck(const CheckArguments& arguments) {
+    if (arguments.sweeps && arguments.list) {
+        printResult(listedSweeps(arguments.filter));
+        return 0;
+    }
     if (arguments.sweeps) {
         const Workers workers(arguments.threads);
         const std::vector<Sweep> sweeps = sweep(arguments, workers, terminalLog(arguments.quiet));
@@ -43,7 +60,11 @@ int runCheck(const CheckArguments& arguments) {
     const auto chosen = selectChecks(arguments.filter, arguments.quick);
     if (chosen.empty())
         throw Error(ErrorKind::Usage, "no check has '" + arguments.filter + "' in its name", "--filter",
-                    "run without --filter to see all names");
+                    "--list shows all names");
+    if (arguments.list) {
+        printResult(listed(chosen));
+        return 0;
+    }
     const Workers workers(arguments.threads);
     const LogSink log = terminalLog(arguments.quiet);
     CheckReport report{PELLUCID_VERSION, arguments.seed, workers.threads(), arguments.quick, {}};

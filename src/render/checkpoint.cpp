@@ -51,6 +51,12 @@ struct Reader {
 
 }  // namespace
 
+std::string sealedCheckpoint(const std::string& body) {
+    std::string file = kMagic;
+    put(file, checksum(body));
+    return file + body;
+}
+
 void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key, const CheckpointState& state) {
     std::string body;
     put(body, static_cast<std::uint64_t>(key.text.size()));
@@ -64,11 +70,10 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
         put(body, static_cast<std::uint64_t>(block->size()));
         body.append(block->begin(), block->end());
     }
-    std::string head = kMagic;
-    put(head, checksum(body));
+    const std::string bytes = sealedCheckpoint(body);
     const std::filesystem::path temporary = file.string() + ".tmp";
     std::ofstream out(temporary, std::ios::binary);
-    out.write(head.data(), static_cast<std::streamsize>(head.size())).write(body.data(), static_cast<std::streamsize>(body.size()));
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     out.close();
     std::error_code failed;
     if (out) std::filesystem::rename(temporary, file, failed);

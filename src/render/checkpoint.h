@@ -22,6 +22,9 @@ struct CheckpointState {
     std::uint32_t causticPaths = 0;     ///< of an iteration
 };
 
+/// The bytes of a checkpoint's file around its body: what it is, and the checksum. (Apart so that the fuzzer can seal bodies.)
+[[nodiscard]] std::string sealedCheckpoint(const std::string& body);
+
 void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key, const CheckpointState& state);
 
 /// Empty when there is no such file; throws Error{BadInput} when it is damaged or belongs to another render.

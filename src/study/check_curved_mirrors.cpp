@@ -1,4 +1,5 @@
 // Closed forms 18, 19 and 23: mirrors that focus.
+#include <algorithm>
 #include <cmath>
 
 #include <pellucid/math/constants.h>
@@ -85,9 +86,9 @@ std::vector<Finding> ellipsoid(const CheckContext& context) {
 /// nephroid, with its cusp at R/2.
 struct Cylinder {
     double radius = 1.0, slant = 0.7, irradiance = 3.0, height;
-    explicit Cylinder(double reach) : height(reach * std::tan(slant)) {}
+    explicit Cylinder(double reach, double atLeast = 0.0) : height(std::max(reach * std::tan(slant), atLeast)) {}
 
-    [[nodiscard]] SceneBuilder scene() const {
+    [[nodiscard]] SceneBuilder mirrorAndFloor() const {
         SceneBuilder b;
         const auto wall = [this](double u, double v) {
             const double phi = kPiD * 0.8 * (u - 0.5);
@@ -96,6 +97,10 @@ struct Cylinder {
         };
         b.surface(1024, 1, wall, mirror(1.0F), true);
         b.square(glm::dvec3(0.0), kUp, 1.2, lambert(static_cast<float>(kRho)));
+        return b;
+    }
+    [[nodiscard]] SceneBuilder scene() const {
+        SceneBuilder b = mirrorAndFloor();
         b.sun({std::cos(slant), 0, -std::sin(slant)}, irradiance);
         return b;
     }
@@ -130,25 +135,36 @@ std::vector<Finding> nephroidFlux(const CheckContext& context) {
 }
 
 /// Photons along a strip on the axis: the densest place is the cusp, but for the strip's width, in which the two branches
-/// behind the cusp, |y| ~ (R/2 - s)^(3/2), are still one.
+/// behind the cusp, |y| ~ (s0 - s)^(3/2), are still one. From the wall, in its radii.
+[[nodiscard]] double brightestOnAxis(const CheckContext& context, const Scene& scene, double radius, std::uint64_t seed) {
+    constexpr int kBins = 80;
+    double bins[kBins] = {};
+    for (const Photon& p : causticPhotons(context, scene, 200'000, seed)) {
+        if (std::fabs(p.position.y) > 0.002F) continue;
+        const int bin = static_cast<int>((radius - static_cast<double>(p.position.x)) * kBins);
+        if (bin >= 0 && bin < kBins) bins[bin] += static_cast<double>(p.flux.g);
+    }
+    int best = 0;
+    for (int i = 1; i < kBins; ++i)
+        if (bins[i] > bins[best]) best = i;
+    return (best + 0.5) / kBins;
+}
+
 std::vector<Finding> nephroidCusp(const CheckContext& context) {
     const Cylinder c(0.8);
     const Scene scene = makeScene(context, c.scene().description());
-    return {measureSeeds(context, "distance of the brightest place from the wall, photon pass", 0.5 * c.radius, 0.04,
-                         0.04, [&](std::uint64_t seed) {
-                             constexpr int kBins = 80;
-                             double bins[kBins] = {};
-                             for (const Photon& p : causticPhotons(context, scene, 200'000, seed)) {
-                                 if (std::fabs(p.position.y) > 0.002F) continue;
-                                 const int bin =
-                                     static_cast<int>((c.radius - static_cast<double>(p.position.x)) * kBins);
-                                 if (bin >= 0 && bin < kBins) bins[bin] += static_cast<double>(p.flux.g);
-                             }
-                             int best = 0;
-                             for (int i = 1; i < kBins; ++i)
-                                 if (bins[i] > bins[best]) best = i;
-                             return (best + 0.5) / kBins;
-                         })};
+    return {measureSeeds(context, "distance of the brightest place from the wall, photon pass", 0.5 * c.radius, 0.04, 0.04,
+                         [&](std::uint64_t seed) { return brightestOnAxis(context, scene, c.radius, seed); })};
+}
+
+/// A point light on the circle itself, 2R before the wall: 1/p + 1/q = 2/R puts the cusp of the cardioid at q = 2R/3.
+std::vector<Finding> cardioidCusp(const CheckContext& context) {
+    const Cylinder c(0.0, 0.25);
+    SceneBuilder b = c.mirrorAndFloor();
+    b.point({-c.radius, 0, 0.6}, 1.0);
+    const Scene scene = makeScene(context, b.description());
+    return {measureSeeds(context, "distance of the brightest place from the wall, photon pass", 2.0 / 3.0 * c.radius, 0.04, 0.04,
+                         [&](std::uint64_t seed) { return brightestOnAxis(context, scene, c.radius, seed); })};
 }
 
 }  // namespace
@@ -163,6 +179,7 @@ void addCurvedMirrors(Cases& cases) {
     add("closed-form-23-nephroid-flux", "E = E0 / |1 - 2 s / (R cos phi)| inside a cylindrical mirror",
         "Jacobian of the reflected rays", false, nephroidFlux);
     add("closed-form-23-nephroid-cusp", "the cusp lies at R/2", "[Holditch1858]", false, nephroidCusp);
+    add("closed-form-23-cardioid-cusp", "a light on the circle: the cusp lies at 2R/3, 1/p + 1/q = 2/R", "[Hecht2002, sec. 5.4]", false, cardioidCusp);
 }
 
 }  // namespace pellucid::check

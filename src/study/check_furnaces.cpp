@@ -27,7 +27,7 @@ std::vector<Finding> convexInSky(const CheckContext& context) {
     b.view(glm::dvec3(0.0), {0.3, 0.5, 1.0}, 1.2, 2.0);
     EnvironmentDescription sky;
     sky.constant = Rgb(2.0F);
-    return measure(context, {b.description(),
+    return measureByAll(context, {b.description(),
                              sky,
                              0.7 * 2.0,
                              1.0,

@@ -26,7 +26,7 @@ constexpr double kRho = 0.5, kPatch = 0.2;
 }
 [[nodiscard]] std::vector<Finding> irradiance(const CheckContext& context, SceneBuilder& b, double expected,
                                               const Settings& settings = smallSettings()) {
-    return measure(context, {b.description(),
+    return measureByAll(context, {b.description(),
                              {},
                              expected,
                              kPiD / kRho,

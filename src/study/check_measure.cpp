@@ -112,6 +112,20 @@ std::vector<Finding> measure(const CheckContext& context, Rendered what) {
     return findings;
 }
 
+std::vector<Finding> measureByAll(const CheckContext& context, Rendered what) {
+    const auto unbiased = std::ranges::find_if(what.by, [](const By& by) { return by.method == Method::Path || by.method == Method::Light; });
+    if (unbiased != what.by.end()) {
+        By twin = *unbiased;
+        twin.samples = std::max(4U, twin.samples / 4);
+        twin.resolution = std::max(0.06, 3.0 * twin.resolution);
+        for (const Method method : {Method::Bdpt, Method::Reference}) {
+            twin.method = method;
+            what.by.push_back(twin);
+        }
+    }
+    return measure(context, std::move(what));
+}
+
 PhotonList causticPhotons(const CheckContext& context, const Scene& scene, std::uint32_t paths, std::uint64_t seed) {
     const EmissionGuide unguided(scene.lights(), {});
     const CausticPass pilot =

@@ -65,6 +65,11 @@ struct Rendered {
 /// One finding a method; one more where samples were not finite.
 [[nodiscard]] std::vector<Finding> measure(const CheckContext& context, Rendered what);
 
+/// The same by every method: bidirectional paths and the reference (paths and light tracing by class) join those listed,
+/// under the claims of the first unbiased one, with a fourth of its samples and so coarser intervals. For scenes whose lamps
+/// are seen straight: of caustics of points bidirectional paths make too noisy a figure.
+[[nodiscard]] std::vector<Finding> measureByAll(const CheckContext& context, Rendered what);
+
 /// One render of a scene that stands already.
 [[nodiscard]] RenderResult renderOnce(const CheckContext& context, const Scene& scene, const By& by,
                                       const Settings& settings, int size, std::uint64_t seed);

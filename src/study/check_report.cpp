@@ -101,8 +101,8 @@ std::string checkMarkdown(const CheckReport& report) {
         "beforehand, 0 but for\n"
         "rounding with unbiased methods. A figure passes when the two together cover its distance from the "
         "expectation, and when the\n"
-        "interval is narrow enough to mean something. *path*, *photon* and *light* are the methods of `pellucid "
-        "render`.\n\n";
+        "interval is narrow enough to mean something. *path*, *photon*, *light*, *bdpt* and *reference* are the "
+        "methods of `pellucid render`.\n\n";
     page += fmt::format("Version {}, seed {}: {} cases, {} failed.\n", report.version, report.seed,
                         report.results.size(), report.failures());
     for (const auto& [group, title] :

@@ -244,6 +244,12 @@ std::optional<std::size_t> breakdown(const Sweep& sweep, std::size_t method) noe
     return std::nullopt;
 }
 
+std::vector<std::string_view> sweepNames() {
+    std::vector<std::string_view> names;
+    for (const Dial& dial : dials()) names.emplace_back(dial.name);
+    return names;
+}
+
 std::vector<Sweep> runSweeps(const CheckContext& context, std::string_view filter, const std::function<void(const Sweep&)>& done) {
     std::vector<Sweep> sweeps;
     for (const Dial& dial : dials()) {

@@ -1,9 +1,13 @@
 // Each fast path against its simple twin: the kd-tree against the sum over all photons, the cache's index against every
-// record by itself, guided emission against unguided.
+// record by itself, guided emission against unguided, the ray tracer against all triangles one by one.
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include <pellucid/geometry/accel.h>
 #include <pellucid/math/constants.h>
 #include <pellucid/math/hash.h>
 #include <pellucid/render/render.h>
@@ -96,6 +100,64 @@ TEST(FastPaths, CacheIndexFindsExactlyTheRecordsThatSpeak) {
         EXPECT_LE(found->plain.g, most + 1e-5F);
     }
     EXPECT_GT(spoken, 50);
+}
+
+/// Moeller and Trumbore's test in double: distance, and how far inside of the triangle's edges (barycentric) the hit lies.
+struct SlowHit {
+    double t = std::numeric_limits<double>::infinity(), inside = 0.0;
+};
+[[nodiscard]] std::optional<SlowHit> hitTriangle(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 d(ray.direction), ab = b - a, ac = c - a, p = glm::cross(d, ac);
+    const double determinant = glm::dot(ab, p);
+    if (determinant == 0.0) return std::nullopt;
+    const glm::dvec3 to = glm::dvec3(ray.origin) - a, q = glm::cross(to, ab);
+    const double u = glm::dot(to, p) / determinant, v = glm::dot(d, q) / determinant;
+    if (u < 0.0 || v < 0.0 || u + v > 1.0) return std::nullopt;
+    return SlowHit{glm::dot(ac, q) / determinant, std::min({u, v, 1.0 - u - v})};
+}
+
+TEST(FastPaths, RayTracerFindsWhatAllTrianglesOneByOneSay) {
+    Numbers random(3);
+    const auto point = [&random](float size) { return glm::vec3(random.between(-size, size), random.between(-size, size), random.between(-size, size)); };
+    std::vector<Mesh> meshes(2);
+    for (Mesh& mesh : meshes)
+        for (std::uint32_t i = 0; i < 300; ++i) {
+            const glm::vec3 corner = point(1.0F);
+            for (const glm::vec3& p : {corner, corner + point(0.2F), corner + point(0.2F)}) mesh.positions.push_back(p);
+            mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+        }
+    const std::vector<std::uint32_t> meshOf{0, 1, 1};
+    std::vector<glm::mat4> toScene(3, glm::mat4(1.0F));
+    toScene[2][3] = glm::vec4(0.5F, 0.0F, 0.0F, 1.0F);  // the second mesh once more, aside
+    toScene[2][1][1] = -1.0F;                           // and mirrored
+    const Accel accel(meshes, meshOf, toScene);
+    int hits = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const glm::vec3 origin = point(2.0F);
+        const Ray ray{origin, glm::normalize(point(1.0F) - origin), std::numeric_limits<float>::infinity()};
+        SlowHit nearest;
+        double margin = std::numeric_limits<double>::infinity();  // of all that lies on the way: edges may round
+        for (std::size_t g = 0; g < meshOf.size(); ++g)
+            for (const glm::uvec3& t : meshes[meshOf[g]].triangles) {
+                const auto corner = [&](std::uint32_t v) { return glm::dvec3(glm::dmat4(toScene[g]) * glm::dvec4(meshes[meshOf[g]].positions[v], 1.0)); };
+                const auto hit = hitTriangle(ray, corner(t.x), corner(t.y), corner(t.z));
+                if (!hit || hit->t <= 0.0) continue;
+                margin = std::min({margin, hit->inside, hit->t});
+                if (hit->t < nearest.t) nearest = *hit;
+            }
+        if (margin < 1e-4) continue;
+        RawHit found;
+        const bool any = accel.intersect(ray, found);
+        ASSERT_EQ(any, std::isfinite(nearest.t)) << i;
+        ASSERT_EQ(accel.occluded(ray), any) << i;
+        if (!any) continue;
+        ++hits;
+        EXPECT_NEAR(static_cast<double>(found.t), nearest.t, 1e-5 * (1.0 + nearest.t)) << i;
+        Ray shorter = ray;
+        shorter.tMax = found.t * 0.999F;
+        EXPECT_FALSE(accel.occluded(shorter)) << i;
+    }
+    EXPECT_GT(hits, 500);
 }
 
 /// A glass ball over a floor under a point light.

@@ -46,6 +46,8 @@ inline constexpr double kBrokenFactor = 3.0, kSmallError = 0.1;
 /// The first step where the method has broken down; empty: none.
 [[nodiscard]] std::optional<std::size_t> breakdown(const Sweep& sweep, std::size_t method) noexcept;
 
+[[nodiscard]] std::vector<std::string_view> sweepNames();
+
 /// All sweeps whose name holds `filter`. `done` is called after each step, with those so far.
 [[nodiscard]] std::vector<Sweep> runSweeps(const CheckContext& context, std::string_view filter,
                                            const std::function<void(const Sweep&)>& done = {});
