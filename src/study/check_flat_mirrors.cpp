@@ -90,7 +90,7 @@ std::vector<Finding> twoMirrors(const CheckContext& context) {
                              meanOverSquare(e, 8),
                              kPiD / kRho,
                              "irradiance",
-                             {{Method::Photon, 16, 0.01, 0.02, "caustic"}, {Method::Light, 32, 0.0, 0.03, "caustic"}},
+                             {{Method::Photon, 32, 0.01, 0.02, "caustic"}, {Method::Light, 32, 0.0, 0.03, "caustic"}},
                              16,
                              smallSettings()});
 }

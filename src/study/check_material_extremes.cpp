@@ -32,7 +32,7 @@ void append(std::vector<Finding>& to, std::vector<Finding> from) { to.insert(to.
                              expected,
                              1.0,
                              quantity,
-                             {{Method::Path, 16, allowance, 0.03}, {Method::Photon, 4, allowance, 0.05}},
+                             {{Method::Path, 16, allowance, 0.03}, {Method::Photon, 8, allowance, 0.05}},
                              16,
                              smallSettings()});
 }
