@@ -1,4 +1,4 @@
-# One Google Benchmark program for each tests/bench/*_bench.cpp.
+# One Google Benchmark program for each tests/bench/*_bench.cpp. They look into the rooms: nanoflann's headers too.
 find_package(benchmark REQUIRED)
 file(GLOB sources CONFIGURE_DEPENDS tests/bench/*_bench.cpp)
 foreach(source ${sources})
@@ -6,6 +6,7 @@ foreach(source ${sources})
     add_executable(${program} ${source})
     set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bench)
     target_link_libraries(${program} PRIVATE pellucid benchmark::benchmark_main)
+    pellucid_headers(${program} nanoflann::nanoflann)
     target_compile_definitions(${program} PRIVATE PELLUCID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     pellucid_configure(${program})
 endforeach()

@@ -143,7 +143,7 @@ struct Parser {
         command
             ->add_option("--layers", typed.layers,
                          "more layers in the EXR: albedo, normal, depth, variance, records, "
-                         "radius, classes (each path class by itself), all (but classes) or none; emission, direct, "
+                         "radius, photons, classes (each path class by itself), all (but classes) or none; emission, direct, "
                          "caustic and indirect are always there")
             ->type_name("A,B,...");
         command->add_option("--record", render.record, "what was done, as JSON")->type_name("FILE.json");

@@ -17,7 +17,7 @@ constexpr const char* kLayerNames[kPathClasses] = {"emission", "direct", "causti
 }  // namespace
 
 const std::vector<std::string>& auxiliaryLayers() noexcept {
-    static const std::vector<std::string> names{"albedo", "normal", "depth", "variance", "radius", "records", "samples", "classes"};
+    static const std::vector<std::string> names{"albedo", "normal", "depth", "variance", "radius", "photons", "records", "samples", "classes"};
     return names;
 }
 
@@ -57,6 +57,7 @@ void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance
     }
     p.depth += first.depth;
     p.radius += first.kernelRadius;
+    p.photons += first.kernelPhotons;
     if (radiance.strings == nullptr || stringSlots_.empty()) return;
     for (const auto& [path, value] : *radiance.strings) {
         double* sum = &strings_[(static_cast<std::size_t>(slotOf_[path.code()]) * pixels_.size() + pixel) * 3];
@@ -201,12 +202,14 @@ Image Film::image(const std::vector<std::string>& layers) const {
     };
     for (const char* l : kLayerNames) addRgb(l);
     const bool albedo = wants(layers, "albedo"), normal = wants(layers, "normal"), depth = wants(layers, "depth"),
-               withVariance = wants(layers, "variance"), radius = wants(layers, "radius"), samples = wants(layers, "samples");
+               withVariance = wants(layers, "variance"), radius = wants(layers, "radius"), photons = wants(layers, "photons"),
+               samples = wants(layers, "samples");
     if (albedo) addRgb("albedo");
     if (normal) names.insert(names.end(), {"normal.X", "normal.Y", "normal.Z"});
     if (depth) names.emplace_back("depth.Z");
     if (withVariance) names.emplace_back("variance.Y");
     if (radius) names.emplace_back("radius.Y");
+    if (photons) names.emplace_back("photons.Y");
     if (samples) names.emplace_back("samples.Y");
     const auto strings = litStrings();
     for (const auto& [slot, name] : strings) addRgb(name);
@@ -227,6 +230,7 @@ Image Film::image(const std::vector<std::string>& layers) const {
         if (depth) image.at(i, channel++) = p.depth / n;
         if (withVariance) image.at(i, channel++) = static_cast<float>(variance(p));
         if (radius) image.at(i, channel++) = p.radius / n;
+        if (photons) image.at(i, channel++) = p.photons / n;
         if (samples) image.at(i, channel++) = static_cast<float>(p.taken);
         for (const auto& [slot, name] : strings)
             for (std::size_t c = 0; c < 3; ++c) image.at(i, channel++) = static_cast<float>(stringMean(slot, i, c));

@@ -6,8 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <pellucid/render/caustic_links.h>
 #include <pellucid/transport/photon_trace.h>
 #include <pellucid/transport/walk.h>
+
+#include "photon_memory.h"
 
 namespace pellucid {
 
@@ -37,9 +40,10 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
     std::vector<UsefulEmission> useful;
     std::uint32_t paths = kPilotPaths;
     double unguided = 0.0;
+    CasterTally tally(scene);
     for (std::uint64_t attempt = 0; attempt < kPilotRounds; ++attempt) {
         const EmissionGuide guide(scene.lights(), useful);
-        CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible, workers);
+        CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible, workers, &tally);
         plan.pilotRays += pass.rays;
         plan.pilotPhotons += pass.emitted;
         // Each guided look replaces the one before: its sample is the better one. Enough when it hardly finds more.
@@ -53,6 +57,7 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
     }
     plan.training = std::move(useful);
     plan.guideGain = unguided > 0.0 && !isOff(request.settings.guiding) ? std::max(1.0, plan.usefulShare / unguided) : 1.0;
+    plan.causticLinks = causticLinks(scene, tally, seen.receivers);
     return plan.training.size();
 }
 
@@ -70,6 +75,8 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     const auto wanted = static_cast<double>(seen.points.size()) * perPixel;
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
                                               : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
+    const FittedPaths fitted = fitCausticPaths(plan.causticPaths, plan, scene, request, seen, workers);
+    plan.causticPaths = fitted.paths;
     if (s.causticRadius > 0.0) {
         plan.adaptiveRadius = false;
         plan.causticFootprints = static_cast<float>(s.causticRadius);
@@ -79,13 +86,15 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     decide(plan, "caustic map", "on", fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons), isOn(s.causticMap));
     decide(plan, "caustic photons", fmt::format("{} paths an iteration", plan.causticPaths),
            fmt::format("{:.2g} a pixel", static_cast<double>(plan.causticPaths) / static_cast<double>(seen.points.size())), s.causticPhotons >= 0);
+    if (!fitted.remark.empty()) decide(plan, "caustic photons", "fewer", fitted.remark, true);
+    if (s.kernel != Settings{}.kernel) decide(plan, "kernel", s.kernel, "asked for", true);
     decide(plan, "kernel radius", plan.adaptiveRadius ? "pixel by pixel" : fmt::format("{:.2f} pixel footprints", plan.causticFootprints),
            plan.adaptiveRadius ? "grows until it holds 60 photons or meets an edge" : "asked for", !plan.adaptiveRadius);
     decide(plan, "emission guiding", isOff(s.guiding) ? "off" : "on",
            fmt::format("{} useful starts in {} cells", useful, EmissionGuide(scene.lights(), plan.training).cells()), isOff(s.guiding));
 }
 
-void planIndirect(Plan& plan, const RenderRequest& request, const Survey& seen) {
+void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen, const Workers& workers) {
     const Settings& s = request.settings;
     if (isOff(s.cache)) {
         decide(plan, "irradiance cache", "off", "asked for; indirect light is path traced", true);
@@ -98,6 +107,9 @@ void planIndirect(Plan& plan, const RenderRequest& request, const Survey& seen) 
     }
     plan.cache = plan.globalMap = true;
     plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons) : kGlobalPaths;
+    const FittedPaths fitted = fitGlobalPaths(plan.globalPaths, plan, scene, request, workers);
+    plan.globalPaths = fitted.paths;
+    plan.mostGlobalPaths = fitted.most;
     plan.growPhotons = s.globalPhotons < 0;
     plan.growRays = s.gatherRays <= 0;
     plan.globalMap = plan.globalPaths > 0;
@@ -108,6 +120,7 @@ void planIndirect(Plan& plan, const RenderRequest& request, const Survey& seen) 
     const double share = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
     decide(plan, "irradiance cache", "on", fmt::format("{:.1f} % of the pixels end at a diffuse surface", share), isOn(s.cache));
     decide(plan, "global map", plan.globalMap ? "on" : "off", fmt::format("{} photon paths for the first generation of records{}", plan.globalPaths, plan.growPhotons ? ", half as many more for each next" : ""), s.globalPhotons >= 0);
+    if (!fitted.remark.empty()) decide(plan, "global photons", "fewer", fitted.remark, true);
 }
 
 [[nodiscard]] std::size_t pointLikeLights(const Lights& lights) {
@@ -209,6 +222,7 @@ GenerationSize Plan::generation(std::uint32_t number) const noexcept {
     constexpr std::uint32_t kRayDoublings = 2;
     GenerationSize size{globalPaths, gatherRays, 0.0F};
     if (growPhotons) size.globalPaths = static_cast<std::uint32_t>(std::min(globalPaths * std::pow(kPhotonGrowth, number), kMostPhotons));
+    if (mostGlobalPaths > 0) size.globalPaths = std::min(size.globalPaths, mostGlobalPaths);
     if (growRays) size.gatherRays <<= std::min(number, kRayDoublings);
     size.cacheError = static_cast<float>(static_cast<double>(cacheError) * std::pow(number + 1.0, -kErrorPower));
     return size;
@@ -219,7 +233,7 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     plan.alpha = static_cast<float>(request.settings.alpha);
     if (request.method == Method::Photon) {
         planCaustics(plan, scene, request, seen, workers);
-        planIndirect(plan, request, seen);
+        planIndirect(plan, scene, request, seen, workers);
     } else if (request.method == Method::Bdpt) {
         decide(plan, "light paths", fmt::format("{} a pass", camera.width() * camera.height()),
                "one for each eye path: connected to it vertex by vertex, and splatted on the whole image");
@@ -239,6 +253,8 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     }
     const bool casts = (scene.lobeKinds() & kSpecular) != kNoLobe;
     plan.causticChains = plan.cache && casts && (plan.causticMap ? isOn(request.settings.chance) : isOff(request.settings.causticMap));
+    const bool photons = request.method != Method::Path && request.method != Method::Bdpt;
+    if (photons && plan.causticLinks.empty()) plan.causticLinks = causticLinks(scene, CasterTally(scene), seen.receivers);
     planEyePaths(plan, scene, request);
     findBlindSpots(plan, scene, request);
     const Budget& b = request.budget;

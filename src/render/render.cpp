@@ -98,6 +98,18 @@ void addEnergy(StageRecord& stage, const EnergyBalance& pass) {
     return mean;
 }
 
+[[nodiscard]] PhotonKernel photonKernel(const std::string& name) {
+    if (name == "uniform") return PhotonKernel::Uniform;
+    if (name == "cone") return PhotonKernel::Cone;
+    return name == "biweight" ? PhotonKernel::Biweight : PhotonKernel::Epanechnikov;
+}
+
+[[nodiscard]] KernelRadiusOptions radiusOptions(const Settings& settings) {
+    KernelRadiusOptions options;
+    options.enough *= photonsWanted(photonKernel(settings.kernel));
+    return options;
+}
+
 [[nodiscard]] SamplerKind samplerKind(const std::string& name) {
     if (name == "independent") return SamplerKind::Independent;
     if (name == "stratified") return SamplerKind::Stratified;
@@ -292,7 +304,7 @@ void Renderer::prepare() {
     if (auto remark = endlessRemark(scene_, camera_)) plan_.blindSpots.push_back(*remark);
     pilotStage_.rays += plan_.pilotRays;
     pilotStage_.photonsEmitted += plan_.pilotPhotons;
-    if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), KernelRadiusOptions{});
+    if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), radiusOptions(request_.settings));
     if (request_.method == Method::Reference) context_.options.left = {plan_.lightPass, plan_.texelWidth > 0.0F};
     if (plan_.texelWidth > 0.0F) texels_ = std::make_unique<TexelIrradiance>(scene_, camera_, plan_.texelWidth);
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
@@ -428,7 +440,7 @@ void Renderer::causticPass() {
     causticStage_.photonsEmitted += pass.emitted;
     addEnergy(causticStage_, pass.energy);
     causticStage_.photonsStored += pass.photons.size();
-    causticMap_ = std::make_unique<CausticMap>(std::move(pass.photons));
+    causticMap_ = std::make_unique<CausticMap>(std::move(pass.photons), photonKernel(request_.settings.kernel));
     context_.maps.caustic = causticMap_.get();
     // r^2_{i+1} = r^2_i (i + alpha) / (i + 1) [KnausZwicker2011]
     if (iteration_ > 0) radiusScale_ *= (iteration_ + static_cast<double>(plan_.alpha)) / (iteration_ + 1.0);
@@ -641,6 +653,7 @@ void Renderer::tell(std::string_view stage) const {
 RenderRecord Renderer::record() const {
     RenderRecord r;
     r.decisions = plan_.decisions;
+    r.causticLinks = plan_.causticLinks;
     r.blindSpots = plan_.blindSpots;
     for (const StageRecord* s : {&pilotStage_, &globalStage_, &cacheStage_, &causticStage_, &lightStage_, &eyeStage_})
         r.stages.push_back(withMeanEnergy(*s, scene_.normalisation().scale()));

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <pellucid/render/caustic_links.h>
 #include <pellucid/study/text_table.h>
 
 namespace pellucid {
@@ -21,6 +22,17 @@ using Json = nlohmann::ordered_json;
     Json json = Json::array();
     for (const Decision& d : decisions)
         json.push_back({{"name", d.name}, {"choice", d.choice}, {"reason", d.reason}, {"overridden", d.overridden}});
+    return json;
+}
+
+/// Rows of "caustics" in JSON, and in the plan's table: the rest is summed.
+constexpr std::size_t kMostLinks = 256, kMostLinkRows = 12;
+
+[[nodiscard]] Json linksJson(const std::vector<CausticLink>& links) {
+    Json json = Json::array();
+    for (const CausticLink& l : shortened(links, kMostLinks))
+        json.push_back({{"lamp", l.lamp}, {"caster", l.caster}, {"emitted", l.emitted}, {"hit", l.hit},
+                        {"deposited", l.deposited}, {"useful", l.useful}, {"reason", l.reason}});
     return json;
 }
 
@@ -57,6 +69,7 @@ using Json = nlohmann::ordered_json;
     json["threads"] = record.threads;
     json["settings"] = settingsJson(record.resolved);
     json["plan"] = decisionsJson(record.decisions);
+    json["caustics"] = linksJson(record.causticLinks);
     json["blind_spots"] = record.blindSpots;
     json["stages"] = stagesJson(record.stages);
     return json;
@@ -68,6 +81,14 @@ using Json = nlohmann::ordered_json;
 }
 
 [[nodiscard]] std::string countText(std::uint64_t count) { return count == 0 ? "-" : std::to_string(count); }
+
+/// "Why is there no caustic?"
+[[nodiscard]] std::string linksText(const std::vector<CausticLink>& links) {
+    TextTable table({"lamp", "caster", "pilot paths", "hit it", "left photons", "in view", "no caustic, because"});
+    for (const CausticLink& l : shortened(links, kMostLinkRows))
+        table.add({printable(l.lamp), printable(l.caster), countText(l.emitted), countText(l.hit), countText(l.deposited), countText(l.useful), l.reason});
+    return table.text();
+}
 
 }  // namespace
 
@@ -117,6 +138,7 @@ std::string planText(const RenderRecord& plan, const RecordContext& context) {
     for (const Decision& d : plan.decisions)
         decisions.add({d.name, d.overridden ? d.choice + " (set)" : d.choice, d.reason});
     text += decisions.text();
+    if (!plan.causticLinks.empty()) text += "\n" + linksText(plan.causticLinks);
     if (!plan.stages.empty()) {
         TextTable stages({"pass", "seconds, one iteration", "photons", "records"});
         for (const StageRecord& s : plan.stages)

@@ -44,7 +44,8 @@ struct CountFlux : WithinRadius {
     }
 };
 
-/// Sums the kernel while nanoflann visits.
+/// Sums the kernel while nanoflann visits. `Shape`: of kernel_shape.
+template <class Shape>
 struct KernelSum : WithinRadius {
     const PhotonList& photons;
     glm::vec3 point, normal, shadingNormal;
@@ -52,17 +53,19 @@ struct KernelSum : WithinRadius {
     glm::dvec3 sum{0.0};
     double inner = 0.0;  ///< luminance by the kernel of half the area
     float radius, photonsPerEtendue;
+    int count = 0;
 
     KernelSum(const PhotonList& list, const glm::vec3& p, const glm::vec3& ng, const glm::vec3& ns, const DiffuseLobe& l, float r, float perEtendue)
         : WithinRadius{r * r}, photons(list), point(p), normal(ng), shadingNormal(ns), lobe(l), radius(r), photonsPerEtendue(perEtendue) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
         const Photon& p = photons[index];
         if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
+        ++count;
         const float part = distance2 / radius2;
         float through = lobe.b != 0.0F ? lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal))) : 1.0F;
         if (photonsPerEtendue >= 0.0F) through *= 1.0F - chanceShare(radius, photonsPerEtendue, p.etendueDensity);
-        sum += glm::dvec3(p.flux * ((1.0F - part) * through));
-        inner += static_cast<double>(luminance(p.flux) * (2.0F * std::max(0.0F, 1.0F - 2.0F * part) * through));
+        sum += glm::dvec3(p.flux * (Shape::shape(part) * through));
+        if (part < 0.5F) inner += static_cast<double>(luminance(p.flux) * (2.0F * Shape::shape(2.0F * part) * through));
         return true;
     }
 };
@@ -71,26 +74,41 @@ struct KernelSum : WithinRadius {
 
 struct CausticMap::Impl {
     PhotonList photons;
+    PhotonKernel kernel;
     std::vector<PointSite> sites;  ///< what the tree's search touches: positions only
     PointTree<PointSite> tree;
-    explicit Impl(PhotonList list) : photons(std::move(list)), sites(photons.begin(), photons.end()), tree(sites) {}
+    Impl(PhotonList list, PhotonKernel k) : photons(std::move(list)), kernel(k), sites(photons.begin(), photons.end()), tree(sites) {}
 };
 
-CausticMap::CausticMap(PhotonList photons) {
+CausticMap::CausticMap(PhotonList photons, PhotonKernel kernel) {
     sortAlongMortonCurve(photons);
-    impl_ = std::make_unique<Impl>(std::move(photons));
+    impl_ = std::make_unique<Impl>(std::move(photons), kernel);
 }
 CausticMap::~CausticMap() = default;
 CausticMap::CausticMap(CausticMap&&) noexcept = default;
 
-Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                           const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue) const noexcept {
-    KernelSum result(impl_->photons, point, geometricNormal, shadingNormal, lobe, radius, photonsPerEtendue);
+template <class Shape>
+Rgb CausticMap::sum(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal, const DiffuseLobe& lobe,
+                    float radius, float* blur, float photonsPerEtendue, int* photons) const noexcept {
+    KernelSum<Shape> result(impl_->photons, point, geometricNormal, shadingNormal, lobe, radius, photonsPerEtendue);
     impl_->tree.search(point, result);
-    const double perArea = 2.0 / (kPiD * static_cast<double>(radius) * static_cast<double>(radius));
+    const double perArea = static_cast<double>(Shape::kScale) / (kPiD * static_cast<double>(radius) * static_cast<double>(radius));
     const Rgb irradiance(result.sum * perArea);
     if (blur != nullptr) *blur = 2.0F * (luminance(irradiance) - static_cast<float>(result.inner * perArea));
+    if (photons != nullptr) *photons = result.count;
     return irradiance;
+}
+
+Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
+                           const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue, int* photons) const noexcept {
+    using namespace kernel_shape;
+    switch (impl_->kernel) {
+        case PhotonKernel::Uniform: return sum<Uniform>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+        case PhotonKernel::Cone: return sum<Cone>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+        case PhotonKernel::Biweight: return sum<Biweight>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+        case PhotonKernel::Epanechnikov: break;
+    }
+    return sum<Epanechnikov>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
 }
 
 FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept {

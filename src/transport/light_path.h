@@ -109,9 +109,16 @@ template <class Chunk>
     return chunks;
 }
 
-template <class Item>
-void append(std::vector<Item>& to, const std::vector<Item>& from) {
-    to.insert(to.end(), from.begin(), from.end());
+/// Appends `part` of every chunk in order and frees it, so that hardly more than one copy lives at a time.
+template <class Chunk, class Item>
+void gather(std::vector<Item>& to, std::vector<Chunk>& chunks, std::vector<Item> Chunk::*part) {
+    std::size_t size = to.size();
+    for (const Chunk& c : chunks) size += (c.*part).size();
+    to.reserve(size);
+    for (Chunk& c : chunks) {
+        to.insert(to.end(), (c.*part).begin(), (c.*part).end());
+        std::vector<Item>().swap(c.*part);
+    }
 }
 
 }  // namespace pellucid::light_path

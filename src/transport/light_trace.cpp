@@ -46,7 +46,7 @@ namespace {
 LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide, const PhotonPassKey& key,
                           const Workers& workers, const VisibleCells* looked) {
     const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
-    const auto chunks = inChunks<LightPass>(key.paths, workers, [&](std::uint32_t index, LightPass& out) {
+    auto chunks = inChunks<LightPass>(key.paths, workers, [&](std::uint32_t index, LightPass& out) {
         Sampler sampler(key.seed, key.pass, index);
         const auto start = guide.sample(sampler);
         if (!start) return;
@@ -78,10 +78,10 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
     });
     LightPass pass;
     pass.emitted = key.paths;
+    gather(pass.splats, chunks, &LightPass::splats);
+    gather(pass.arrivals, chunks, &LightPass::arrivals);
+    gather(pass.useful, chunks, &LightPass::useful);
     for (const LightPass& c : chunks) {
-        pass.splats.insert(pass.splats.end(), c.splats.begin(), c.splats.end());
-        append(pass.arrivals, c.arrivals);
-        pass.useful.insert(pass.useful.end(), c.useful.begin(), c.useful.end());
         pass.rays += c.rays;
         pass.energy.add(c.energy);
     }

@@ -19,9 +19,9 @@ namespace {
 }  // namespace
 
 CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, const PhotonPassKey& key, const VisibleCells* visible,
-                                const Workers& workers) {
+                                const Workers& workers, CasterTally* tally) {
     const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
-    const auto chunks = inChunks<CausticPass>(key.paths, workers, [&](std::uint32_t index, CausticPass& out) {
+    auto chunks = inChunks<CausticPass>(key.paths, workers, [&](std::uint32_t index, CausticPass& out) {
         Sampler sampler(key.seed, key.pass, index);
         const auto start = guide.sample(sampler);
         if (!start) return;
@@ -30,15 +30,20 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
         bool useful = false;
         glm::vec3 landed(0.0F);
         Rgb arrived(0.0F);
+        CasterTally::Path fate;
+        bool ended = false;
         for (;;) {
             ++out.rays;
             const auto a = arrive(scene, path, sampler);
             if (!a) break;
+            ended = true;
             path.sink = receives(*a) ? &EnergyBalance::left : &EnergyBalance::absorbed;
             if (path.vertices > 1 && receives(*a)) {
                 Photon photon = photonOf(*a, path.flux, perPath);
                 photon.etendueDensity = density;
-                if (usable(photon) && (visible == nullptr || visible->seen(photon.position))) {
+                const bool seen = visible == nullptr || visible->seen(photon.position);
+                if (tally != nullptr && usable(photon)) fate.leavePhoton(seen);
+                if (usable(photon) && seen) {
                     out.photons.push_back(photon);
                     path.sink = &EnergyBalance::stored;
                     arrived += path.flux;
@@ -46,8 +51,11 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
                     useful = true;
                 }
             }
+            if (tally != nullptr) tally->meet(fate, a->hit.point.material);
             if (!scatter(scene, path, *a, kSpecular, sampler)) break;
+            ended = false;
         }
+        if (tally != nullptr) tally->add(start->emission.light, fate, path.vertices, !ended);
         out.energy.add(path.energy, static_cast<double>(perPath));
         if (useful && emitted > 0.0F) {
             UsefulEmission origin = start->origin;
@@ -58,9 +66,9 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
     });
     CausticPass pass;
     pass.emitted = key.paths;
+    gather(pass.photons, chunks, &CausticPass::photons);
+    gather(pass.useful, chunks, &CausticPass::useful);
     for (const CausticPass& c : chunks) {
-        append(pass.photons, c.photons);
-        append(pass.useful, c.useful);
         pass.rays += c.rays;
         pass.energy.add(c.energy);
     }
@@ -70,7 +78,7 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
 GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, const Workers& workers) {
     const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
     const EmissionGuide unguided(scene.lights(), {}, 0.0);
-    const auto chunks = inChunks<GlobalPass>(key.paths, workers, [&](std::uint32_t index, GlobalPass& out) {
+    auto chunks = inChunks<GlobalPass>(key.paths, workers, [&](std::uint32_t index, GlobalPass& out) {
         Sampler sampler(key.seed, key.pass, index);
         const auto start = unguided.sample(sampler);
         if (!start) return;
@@ -92,8 +100,8 @@ GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, cons
     });
     GlobalPass pass;
     pass.emitted = key.paths;
+    gather(pass.photons, chunks, &GlobalPass::photons);
     for (const GlobalPass& c : chunks) {
-        append(pass.photons, c.photons);
         pass.rays += c.rays;
         pass.energy.add(c.energy);
     }

@@ -157,10 +157,11 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         state.causticServed = true;
         state.sharedNext = maps.causticsShared();
         state.kernelRadius = radius;
-        if (first != nullptr && state.vertices == 1) first->kernelRadius = radius;
         float blur = 0.0F;
+        int photons = 0;
         const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius, &blur,
-                                                          state.sharedNext ? maps.photonsPerEtendue : -1.0F);
+                                                          state.sharedNext ? maps.photonsPerEtendue : -1.0F, &photons);
+        if (first != nullptr && state.vertices == 1) first->kernelRadius = radius, first->kernelPhotons = static_cast<float>(photons);
         PathString path = state.ledger.pathAfter(kDiffuse);
         path.pass(kSpecular);
         const Rgb seen = state.throughput * outgoing * irradiance;

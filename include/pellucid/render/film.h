@@ -96,7 +96,7 @@ private:
         double splatSquare = 0.0;     ///< of the luminance of a pass's splats
         float splatPass = 0.0F;       ///< while a pass is added
         float albedo[3] = {}, normal[3] = {};
-        float depth = 0.0F, radius = 0.0F;
+        float depth = 0.0F, radius = 0.0F, photons = 0.0F;
         std::uint32_t nonfinite = 0, firstNonfinite = 0;
     };
     [[nodiscard]] Rgb mean(const Pixel& p, int layer) const noexcept;

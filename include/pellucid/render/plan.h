@@ -38,6 +38,7 @@ struct Plan {
     float alpha = 2.0F / 3.0F;
     float cacheError = 0.25F;
     int gatherRays = 128;                ///< a record, in the first generation
+    std::uint32_t mostGlobalPaths = 0;   ///< of any generation, for photon.memory; 0: no limit
     bool growPhotons = true, growRays = true;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
     bool causticChains = false;          ///< beside the cache eye paths follow S chains to the lamps, alone or with a share
@@ -47,6 +48,7 @@ struct Plan {
     bool adaptive = false;               ///< pixels take samples by their noise
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;
+    std::vector<CausticLink> causticLinks;
     std::vector<std::string> blindSpots;
     double timeCap = 0.0;                ///< seconds, for a render that has only an error to reach; 0: none
     std::uint64_t pilotRays = 0, pilotPhotons = 0;

@@ -70,6 +70,16 @@ struct NonFinite {
     std::uint32_t sample = 0;
 };
 
+/// What the pilot's photon paths of one lamp did at one caster (names of lights and materials).
+struct CausticLink {
+    std::string lamp, caster;
+    std::uint64_t emitted = 0;              ///< by the lamp, towards anything
+    std::uint64_t hit = 0;                  ///< met the caster
+    std::uint64_t deposited = 0;            ///< and left a caustic photon on a diffuse surface
+    std::uint64_t useful = 0;               ///< and did so where the camera looks
+    std::string reason;                     ///< why there is no caustic; empty where there is one
+};
+
 /// How caustics seen in mirrors and through glass were made for a reference.
 struct TexelReport {
     std::size_t texels = 0;                 ///< 0: they were not
@@ -80,6 +90,7 @@ struct TexelReport {
 struct RenderRecord {
     TexelReport texels;
     std::vector<Decision> decisions;
+    std::vector<CausticLink> causticLinks;  ///< lamp x caster, those that matter most first; empty where no photons are planned
     std::vector<std::string> blindSpots;    ///< path classes that this method cannot see in this scene
     std::vector<StageRecord> stages;
     std::uint32_t iterations = 0, samplesPerPixel = 0;

@@ -7,6 +7,7 @@
 
 #include <pellucid/surface/bsdf.h>
 #include <pellucid/transport/photon.h>
+#include <pellucid/transport/photon_kernel.h>
 
 namespace pellucid {
 
@@ -27,17 +28,18 @@ struct FluxSums {
 
 class CausticMap {
 public:
-    explicit CausticMap(PhotonList photons);
+    explicit CausticMap(PhotonList photons, PhotonKernel kernel = PhotonKernel::Epanechnikov);
     ~CausticMap();
     CausticMap(CausticMap&&) noexcept;
 
     /// Irradiance (W m^-2) from the photons within `radius`, each weighted by the lobe's transmittance T for its direction:
-    /// E = sum dPhi T(wi.n) K(d/r) / (pi r^2), Epanechnikov kernel K = 2 (1 - d^2/r^2). [Jensen1996], [Silverman1986]
-    /// `blur` receives an estimate of the kernel's bias, in luminance: the bias grows as r^2, so twice the difference of this
-    /// kernel's estimate and that of one with half its area, from the same photons.
-    /// `photonsPerEtendue` >= 0: each photon has the share that chanceShare() leaves to it.
+    /// E = sum dPhi T(wi.n) K(d/r) / (pi r^2), by default Epanechnikov's kernel K = 2 (1 - d^2/r^2). [Jensen1996], [Silverman1986]
+    /// `blur` receives an estimate of the kernel's bias, in luminance: the bias of any of the kernels grows as r^2, so twice the
+    /// difference of this kernel's estimate and that of the same shape over half its area, from the same photons.
+    /// `photonsPerEtendue` >= 0: each photon has the share that chanceShare() leaves to it. `photons` receives how many there were.
     [[nodiscard]] Rgb irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                                 const DiffuseLobe& lobe, float radius, float* blur = nullptr, float photonsPerEtendue = -1.0F) const noexcept;
+                                 const DiffuseLobe& lobe, float radius, float* blur = nullptr, float photonsPerEtendue = -1.0F,
+                                 int* photons = nullptr) const noexcept;
 
     /// What arrived within `radius` on the side of the normal.
     [[nodiscard]] FluxSums fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept;
@@ -46,6 +48,9 @@ public:
 
 private:
     struct Impl;
+    template <class Shape>
+    [[nodiscard]] Rgb sum(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal, const DiffuseLobe& lobe,
+                          float radius, float* blur, float photonsPerEtendue, int* photons) const noexcept;
     std::unique_ptr<Impl> impl_;
 };
 

@@ -7,6 +7,7 @@
 
 #include <pellucid/base/parallel.h>
 #include <pellucid/scene/scene.h>
+#include <pellucid/transport/caster_tally.h>
 #include <pellucid/transport/emission_guide.h>
 #include <pellucid/transport/energy.h>
 #include <pellucid/transport/photon.h>
@@ -34,9 +35,10 @@ struct GlobalPass {
     EnergyBalance energy;            ///< of the pass, scene units
 };
 
-/// L S+ D photons by guided emission. `visible`: photons outside of it are dropped, and not useful (null: all are).
+/// L S+ D photons by guided emission. `visible`: photons outside of it are dropped, and not useful (null: all are). `tally`
+/// counts what became of the paths (null: nobody asks).
 [[nodiscard]] CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, const PhotonPassKey& key,
-                                              const VisibleCells* visible, const Workers& workers);
+                                              const VisibleCells* visible, const Workers& workers, CasterTally* tally = nullptr);
 
 /// All photons that arrive at D vertices, lights by power.
 [[nodiscard]] GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, const Workers& workers);

@@ -59,6 +59,7 @@ struct FirstHit {
     glm::vec3 normal{0.0F};
     float depth = 0.0F;               ///< scene units; 0: nothing was hit
     float kernelRadius = 0.0F;        ///< of the caustic look-up, scene units
+    float kernelPhotons = 0.0F;       ///< that it met
 
     /// For means over samples.
     void addShare(const FirstHit& other, float weight) noexcept {
@@ -66,6 +67,7 @@ struct FirstHit {
         normal += other.normal * weight;
         depth += other.depth * weight;
         kernelRadius += other.kernelRadius * weight;
+        kernelPhotons += other.kernelPhotons * weight;
     }
 };
 

@@ -1,0 +1,19 @@
+/// "Why is there no caustic?": for every lamp and caster what the pilot's photons did, and the reason where nothing arrives.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <pellucid/render/render.h>
+#include <pellucid/transport/caster_tally.h>
+
+namespace pellucid {
+
+/// One row a pair, those that matter most first: useful photons, then hits, then the power of the lamp. `receivers`: pixels
+/// whose path finds a diffuse surface.
+[[nodiscard]] std::vector<CausticLink> causticLinks(const Scene& scene, const CasterTally& tally, std::size_t receivers);
+
+/// At most `rows` of them; the last one sums the rest.
+[[nodiscard]] std::vector<CausticLink> shortened(const std::vector<CausticLink>& links, std::size_t rows);
+
+}  // namespace pellucid
