@@ -151,6 +151,23 @@ struct Parser {
             command->add_option("--checkpoint", render.checkpoint, "state to go on from")->type_name("FILE");
         command->add_flag("--resume", render.resume, "go on from the checkpoint")->needs(checkpoint);
         command
+            ->add_option("--cache", render.cache,
+                         "records and global map of this scene's light: read if the file is there, and written with what "
+                         "this view adds. A file of another scene or of other settings is refused")
+            ->excludes(checkpoint)
+            ->type_name("FILE");
+        command
+            ->add_option("--views", render.views,
+                         "a flythrough: an image for each camera of FILE, which has lines `eye X Y Z target X Y Z [up X Y Z] "
+                         "[fov DEGREES]`, or for each of the scene's own; out.exr gives out.0000.exr, ... All share one "
+                         "irradiance cache; the budget is that of each image")
+            ->excludes(checkpoint)
+            ->type_name("FILE|all");
+        command
+            ->add_option("--export-points", render.pointsFolder,
+                         "folder for records.ply and caustic-photons.ply: point clouds for Blender or MeshLab")
+            ->type_name("DIR");
+        command
             ->add_option("--debug-sample", typed.sample,
                          "instead of rendering, take sample S (from 0) of pixel X,Y again and print its path, vertex by "
                          "vertex")
@@ -158,7 +175,9 @@ struct Parser {
         command->footer(
             "Examples:\n  pellucid render scene.glb -o out.exr -o out.png --time 30\n"
             "  pellucid render scene.glb -o ref.exr --method reference --spp 4096 --checkpoint ref.state\n"
-            "  pellucid render scene.glb -o out.exr --set cache.error=0.2 --layers variance,albedo");
+            "  pellucid render scene.glb -o out.exr --set cache.error=0.2 --layers variance,albedo\n"
+            "  pellucid render scene.glb -o left.exr --camera left --cache scene.cache --time 30\n"
+            "  pellucid render scene.glb -o frame.exr --views path.txt --spp 64");
         return command;
     }
 
@@ -345,6 +364,10 @@ struct Parser {
             for (const std::string& file : render.outputs) requireExtension("-o", file, kImageExtensions);
             if (!typed.layers.empty()) render.layers = parseLayers(typed.layers);
             resolve(render.common, typed);
+            if (!render.cache.empty() && render.common.method != Method::Photon)
+                throw Error(ErrorKind::Usage, "only --method photon has an irradiance cache", "--cache", "leave --cache or --method away");
+            if (!render.views.empty() && (!render.common.camera.empty() || !render.pointsFolder.empty() || render.debugSample))
+                throw Error(ErrorKind::Usage, "--camera, --export-points and --debug-sample are for one view", "--views", "leave --views away, or them");
             return render;
         }
         if (planCommand->parsed()) {

@@ -42,7 +42,8 @@ struct RenderArguments {
     std::vector<std::string> outputs;
     float exposure = 0.0F;
     std::vector<std::string> layers;
-    std::string record, checkpoint;
+    std::string record, checkpoint, cache, pointsFolder;
+    std::string views;        ///< file of cameras, or "all": those of the scene; empty: one image
     bool resume = false;
     std::optional<SampleName> debugSample;  ///< replay this one instead of rendering
 };

@@ -1,12 +1,14 @@
 // `pellucid render`: check the outputs, load, render, write. Loading counts against a budget of time.
 #include <array>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 
 #include <pellucid/base/error.h>
 #include <pellucid/io/image_file.h>
 #include <pellucid/io/plain_file.h>
+#include <pellucid/render/views.h>
 #include <pellucid/study/record_json.h>
 #include <pellucid/study/text_table.h>
 
@@ -28,24 +30,32 @@ constexpr int kInterrupted = 130;
 /// A render that took an hour must not end with a file that cannot be written.
 void checkOutputs(const RenderArguments& arguments) {
     for (const std::string& file : arguments.outputs) checkFolderWritable(file);
-    for (const std::string& file : {arguments.record, arguments.checkpoint})
+    for (const std::string& file : {arguments.record, arguments.checkpoint, arguments.cache})
         if (!file.empty()) checkFolderWritable(file);
 }
 
-[[nodiscard]] RenderResult renderWithProgress(const Scene& scene, const RenderRequest& request, const Workers& workers,
-                                              bool quiet) {
-    TerminalProgress terminal(quiet);
-    const LogSink print = terminalLog(quiet);
-    const LogSink log = [&](LogLevel level, std::string_view message) {
-        terminal.clear();
-        logTo(print, level, message);
-    };
-    Progress progress;
-    progress.report = [&terminal](const ProgressReport& report) { terminal.report(report); };
-    progress.interrupted = interruptAsked;
-    catchInterrupts();
-    return render(scene, request, workers, progress, log);
-}
+/// A progress bar on a terminal, and messages that do not tear it.
+class Terminal {
+public:
+    explicit Terminal(bool quiet) : bar_(quiet), print_(terminalLog(quiet)) { catchInterrupts(); }
+
+    [[nodiscard]] Progress progress() {
+        Progress progress;
+        progress.report = [this](const ProgressReport& report) { bar_.report(report); };
+        progress.interrupted = interruptAsked;
+        return progress;
+    }
+    [[nodiscard]] LogSink log() {
+        return [this](LogLevel level, std::string_view message) {
+            bar_.clear();
+            logTo(print_, level, message);
+        };
+    }
+
+private:
+    TerminalProgress bar_;
+    LogSink print_;
+};
 
 [[nodiscard]] ImageMetadata metadataOf(const RecordContext& context, const RenderRecord& record) {
     ImageMetadata metadata{{"pellucid.version", context.version},
@@ -82,10 +92,22 @@ void tellResult(const RenderResult& result, const RecordContext& context, const 
                   ", seed " + std::to_string(context.seed) +
                   "; --debug-sample " + std::to_string(bad.x) + "," + std::to_string(bad.y) + "," +
                   std::to_string(bad.sample) + " takes it again");
+    if (record.reuse.asked)
+        logTo(log, LogLevel::Info,
+              std::to_string(record.reuse.recordsReused) + " cache records were there already, " +
+                  std::to_string(record.reuse.recordsNew) + " are new");
     logTo(log, LogLevel::Info,
           std::string(result.interrupted ? "interrupted; " : "") + std::to_string(context.width) + "x" +
               std::to_string(context.height) + ", " + std::to_string(record.samplesPerPixel) + " samples a pixel, " +
               duration(record.seconds) + ", estimated error " + figure(100.0 * record.errorEstimate) + " %");
+}
+
+/// out.exr -> out.0012.exr
+[[nodiscard]] std::string numbered(const std::string& name, std::size_t frame) {
+    const std::filesystem::path file(name);
+    std::string number = std::to_string(frame);
+    number.insert(0, number.size() < 4 ? 4 - number.size() : 0, '0');
+    return (file.parent_path() / (file.stem().string() + "." + number + file.extension().string())).string();
 }
 
 [[nodiscard]] RecordContext contextOf(const RenderArguments& arguments, const Scene& scene,
@@ -104,6 +126,36 @@ void tellResult(const RenderResult& result, const RecordContext& context, const 
     return context;
 }
 
+void writeResult(const RenderArguments& arguments, const Scene& scene, const RenderResult& result, const LogSink& log) {
+    const RecordContext context = contextOf(arguments, scene, result);
+    const ImageMetadata metadata = metadataOf(context, result.record);
+    for (const std::string& file : arguments.outputs) writeImage(file, result.image, arguments.exposure, metadata);
+    if (!arguments.record.empty()) writeFile(arguments.record, recordJson(result.record, context));
+    tellResult(result, context, log);
+}
+
+/// Every camera in turn, with numbers in the names of all that is written.
+[[nodiscard]] bool runViews(const RenderArguments& arguments, const Scene& scene, const RenderRequest& request, const Workers& workers) {
+    std::vector<std::string> cameras;
+    for (std::size_t i = 0; i < scene.description().cameras.size(); ++i) cameras.push_back(scene.description().cameras[i].name);
+    std::set<std::string> distinct(cameras.begin(), cameras.end());
+    if (distinct.size() < cameras.size() || distinct.contains(""))
+        for (std::size_t i = 0; i < cameras.size(); ++i) cameras[i] = std::to_string(i);
+    Terminal terminal(arguments.common.quiet);
+    const LogSink log = terminal.log();
+    bool interrupted = false;
+    std::size_t frames = 0;
+    renderViews(scene, request, cameras, [&](std::size_t frame, const RenderResult& result) {
+        RenderArguments own = arguments;
+        for (std::string& file : own.outputs) file = numbered(file, frame);
+        if (!own.record.empty()) own.record = numbered(own.record, frame);
+        writeResult(own, scene, result, log);
+        interrupted = interrupted || result.interrupted;
+        ++frames;
+    }, workers, terminal.progress());
+    return interrupted || frames < cameras.size();
+}
+
 }  // namespace
 
 int runRender(const RenderArguments& arguments, Clock::time_point started) {
@@ -111,18 +163,18 @@ int runRender(const RenderArguments& arguments, Clock::time_point started) {
     const LogSink log = terminalLog(arguments.common.quiet);
     checkOutputs(arguments);
     const Workers workers(arguments.common.threads);
-    const auto scene = loadScene(arguments.common, true, workers, log);
+    const auto scene = loadScene(arguments.common, true, workers, log, arguments.views == "all" ? std::string() : arguments.views);
     RenderRequest request = makeRequest(arguments.common);
     request.layers = arguments.layers;
     request.checkpoint = arguments.checkpoint;
     request.resume = arguments.resume;
+    request.cacheFile = arguments.cache;
+    request.pointsFolder = arguments.pointsFolder;
+    if (!arguments.views.empty()) return runViews(arguments, *scene, request, workers) ? kInterrupted : 0;
     request.budget.startedSecondsAgo = secondsSince(started);
-    const RenderResult result = renderWithProgress(*scene, request, workers, arguments.common.quiet);
-    const RecordContext context = contextOf(arguments, *scene, result);
-    const ImageMetadata metadata = metadataOf(context, result.record);
-    for (const std::string& file : arguments.outputs) writeImage(file, result.image, arguments.exposure, metadata);
-    if (!arguments.record.empty()) writeFile(arguments.record, recordJson(result.record, context));
-    tellResult(result, context, log);
+    Terminal terminal(arguments.common.quiet);
+    const RenderResult result = render(*scene, request, workers, terminal.progress(), terminal.log());
+    writeResult(arguments, *scene, result, terminal.log());
     return result.interrupted ? kInterrupted : 0;
 }
 

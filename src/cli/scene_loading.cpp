@@ -6,12 +6,19 @@
 
 #include <pellucid/io/gltf.h>
 #include <pellucid/io/image_file.h>
+#include <pellucid/io/views_file.h>
 
 namespace pellucid {
 
 std::unique_ptr<Scene> loadScene(const SceneArguments& arguments, bool requireLight, const Workers& workers,
-                                 const LogSink& log) {
+                                 const LogSink& log, const std::string& viewsFile) {
     SceneDescription description = loadGltf(arguments.scene, log);
+    if (!viewsFile.empty()) {
+        constexpr double kDefaultFov = 0.8;
+        const std::vector<CameraSpec>& own = description.cameras;
+        const bool perspective = !own.empty() && !own.front().orthographic;
+        description.cameras = loadViews(viewsFile, perspective ? own.front().verticalFov : kDefaultFov);
+    }
     std::optional<EnvironmentDescription> environment;
     if (!arguments.environment.empty()) environment = loadEnvironment(arguments.environment);
     SceneOptions options;

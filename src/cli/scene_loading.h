@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <pellucid/base/log.h>
 #include <pellucid/base/parallel.h>
@@ -12,8 +13,9 @@
 
 namespace pellucid {
 
+/// `viewsFile`: cameras in place of those of the scene; empty: the scene's own.
 [[nodiscard]] std::unique_ptr<Scene> loadScene(const SceneArguments& arguments, bool requireLight,
-                                               const Workers& workers, const LogSink& log);
+                                               const Workers& workers, const LogSink& log, const std::string& viewsFile = {});
 
 [[nodiscard]] RenderRequest makeRequest(const SceneArguments& arguments);
 

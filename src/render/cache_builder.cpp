@@ -14,6 +14,8 @@ constexpr int kCoarsestStride = 16;
 constexpr float kReadSlack = 1.25F;
 /// A round is computed in batches, each against the records of those before it.
 constexpr std::size_t kFirstBatch = 64;
+/// A record of another view covers no point that would have made it so many times smaller.
+constexpr float kCoarser = 3.0F;
 
 /// Pixels of this round: on the grid of `stride` but not on the coarser one, in an order that a hash scatters.
 [[nodiscard]] std::vector<std::uint32_t> candidates(const Survey& seen, int width, int stride, std::uint64_t seed) {
@@ -31,11 +33,12 @@ constexpr std::size_t kFirstBatch = 64;
 }  // namespace
 
 CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, const GenerationSize& size, std::uint64_t seed,
-                      const Workers& workers, const std::function<bool()>& stop) {
+                      const Workers& workers, const std::function<bool()>& stop, std::unique_ptr<IrradianceCache> known) {
     CacheBuild build;
     const float error = size.cacheError, read = error * kReadSlack;
-    build.cache = std::make_unique<IrradianceCache>(context.scene.bounds(), read);
+    build.cache = known ? std::move(known) : std::make_unique<IrradianceCache>(context.scene.bounds(), read);
     IrradianceCache& cache = *build.cache;
+    const std::size_t old = cache.records().size();
     for (int stride = kCoarsestStride; stride >= 1; stride /= 2) {
         const std::vector<std::uint32_t> round = candidates(seen, width, stride, seed);
         std::size_t done = 0, batch = kFirstBatch;
@@ -45,7 +48,8 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
             std::vector<std::uint8_t> missed(end - done, 0);
             workers.forEach(end - done, 64, [&](std::size_t i) {
                 const GatherPoint& p = seen.points[round[done + i]];
-                missed[i] = cache.covers(p.position, p.normal, error) ? 0 : 1;
+                const float largest = kCoarser * plan.maxSpacing * p.footprint / error;
+                missed[i] = cache.covers(p.position, p.normal, error, old, largest) ? 0 : 1;
             });
             std::vector<std::uint32_t> misses;
             for (std::size_t i = 0; i < missed.size(); ++i)
@@ -59,8 +63,11 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
                 records[i] = gatherRecord(walk, p, options, misses[i]);
                 rays[i] = walk.rays();
             });
-            for (const IrradianceRecord& r : records)
-                if (!cache.covers(r.position, r.normal, error * 0.7F)) cache.insert(r);
+            for (std::size_t i = 0; i < records.size(); ++i) {
+                const IrradianceRecord& r = records[i];
+                const float largest = kCoarser * plan.maxSpacing * seen.points[misses[i]].footprint / error;
+                if (!cache.covers(r.position, r.normal, error * 0.7F, old, largest)) cache.insert(r);
+            }
             build.rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
             // Grow the batch as the cache fills: late rounds have few misses among many candidates.
             const bool sparse = misses.size() * 8 < end - done;

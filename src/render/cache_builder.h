@@ -1,5 +1,6 @@
 /// Fills an irradiance cache for one view in batch-synchronous rounds, coarse to fine: misses are marked against the frozen
-/// cache, their records computed in parallel and inserted in one order. The same bits at any number of threads.
+/// cache, their records computed in parallel and inserted in one order. The same bits at any number of threads. With the
+/// records of other views to start from only what they do not cover is gathered, and where they are too coarse for this one.
 #pragma once
 
 #include <functional>
@@ -15,8 +16,9 @@ struct CacheBuild {
     std::uint64_t rays = 0;
 };
 
-/// `size` gives Ward's a of this generation; look-ups while rendering use a little more, so that few points miss.
+/// `known`: records to start from, none where empty. `size` gives Ward's a of this generation; look-ups while rendering use a little more, so that few points miss.
 [[nodiscard]] CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, const GenerationSize& size,
-                                    std::uint64_t seed, const Workers& workers, const std::function<bool()>& stop);
+                                    std::uint64_t seed, const Workers& workers, const std::function<bool()>& stop,
+                                    std::unique_ptr<IrradianceCache> known = nullptr);
 
 }  // namespace pellucid

@@ -6,10 +6,12 @@
 #include <cstring>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include <pellucid/base/error.h>
 #include <pellucid/render/film.h>
 #include <pellucid/render/plan.h>
+#include <pellucid/render/views.h>
 #include <pellucid/transport/bidirectional.h>
 #include <pellucid/transport/caustic_map.h>
 #include <pellucid/transport/kernel_radius.h>
@@ -18,8 +20,11 @@
 #include <pellucid/transport/texel_irradiance.h>
 
 #include "cache_builder.h"
+#include "cache_file.h"
 #include "checkpoint.h"
 #include "endless.h"
+#include "learnt_light.h"
+#include "point_cloud.h"
 #include "sample_shares.h"
 
 namespace pellucid {
@@ -29,14 +34,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kTile = 16;
-constexpr std::uint64_t kCausticPass = 1ULL << 40U, kGlobalPass = 2ULL << 40U, kLightPass = 3ULL << 40U, kCachePass = 4ULL << 40U,
-                        kBidirectionalPass = 5ULL << 40U;
+constexpr std::uint64_t kCausticPass = 1ULL << 40U, kLightPass = 3ULL << 40U, kBidirectionalPass = 5ULL << 40U;  // 2, 4: learnt_light.cpp
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
 constexpr double kGenerationShare = 1.5;
 /// Where indirect light is less than this part of the image, the next generation comes later in proportion, by up to this.
 constexpr double kMuchIndirect = 0.25, kMostPatience = 10.0;
-/// Where the global map is evaluated for gather rays.
-constexpr std::size_t kPlaces = 60'000;
 /// How much longer the next generation takes, about.
 constexpr double kGenerationGrowth = 1.5;
 /// Of a budget of time: a cache that is not full by then stays as it is, and what it lacks is traced.
@@ -206,6 +208,10 @@ public:
             if (!request_.checkpoint.empty()) saveWhenDue(interrupted);
         }
         if (!request_.checkpoint.empty()) save();
+        if (!loaded_) saveLight();
+        if (!request_.pointsFolder.empty())
+            writePointClouds(request_.pointsFolder, light_.cache ? light_.cache->records() : std::vector<IrradianceRecord>(),
+                             causticMap_ ? causticMap_->photons() : PhotonList(), scene_.normalisation());
         RenderResult result;
         result.image = film_.image(request_.layers);
         addRecordsLayer(result.image);
@@ -214,11 +220,40 @@ public:
         return result;
     }
 
+    /// For a flythrough: whether the plan of this view has a caustic map.
+    [[nodiscard]] bool wantsCausticMap() {
+        prepare();
+        return plan_.causticMap;
+    }
+    /// What is known and what this view adds to it (in `generation`, where nothing is); as it was where the view has no cache.
+    [[nodiscard]] std::optional<LearntLight> learn(std::optional<LearntLight> known, std::uint32_t generation) {
+        prepare();
+        if (!plan_.cache) return known;
+        known_ = std::move(known);
+        generation_ = generation;
+        renewGeneration();
+        return std::move(light_);
+    }
+    [[nodiscard]] std::optional<LearntLight> fromFile(const std::filesystem::path& file) {
+        prepare();
+        return readCacheFile(file, fileKey(), scene_.bounds());
+    }
+    void toFile(const std::filesystem::path& file, const LearntLight& light) {
+        prepare();
+        writeCacheFile(file, fileKey(), light);
+    }
+    /// All frames look at `light` and nothing is added.
+    void freeze(const LearntLight& light) { frozen_ = light; }
+
 private:
     void prepare();
     void iterate();
     [[nodiscard]] bool generationDue() const;
     void renewGeneration();
+    void useFrozen();
+    [[nodiscard]] CacheKey fileKey() const { return cacheKey(scene_, resolvedSettings(request_.settings, plan_), plan_.causticMap || plan_.causticChains); }
+    void loadLight();
+    void saveLight() const;
     void causticPass();
     void fitRadii();
     void lightPass();
@@ -277,10 +312,14 @@ private:
     std::unique_ptr<EmissionGuide> guide_;
     std::unique_ptr<KernelRadii> kernelRadii_;  ///< none: one radius for all pixels
     std::unique_ptr<CausticMap> causticMap_;
-    std::unique_ptr<RadianceMap> globalMap_;
     std::unique_ptr<TexelIrradiance> texels_;
     std::vector<LightSplat> lightSplats_;
-    std::unique_ptr<IrradianceCache> cache_;
+    LearntLight light_;                  ///< of the running generation
+    std::optional<LearntLight> known_;   ///< to start from
+    std::optional<LearntLight> frozen_;  ///< of a flythrough: for the whole render
+    bool loaded_ = false;
+    double raysLoaded_ = 0.0;
+    ReuseReport reuse_;
     double radiusScale_ = 1.0;         ///< squared, of the caustic kernel
     std::vector<bool> inWindow_;       ///< by pixel; empty: all are
     double windowScale_ = 1.0;         ///< pixels of the image / pixels in windows
@@ -312,6 +351,7 @@ void Renderer::prepare() {
     context_.maps.causticChains = plan_.causticChains;
     context_.maps.photonsPerEtendue = static_cast<float>(plan_.causticPaths * plan_.guideGain);
     if (!request_.windows.empty()) keepWindows();
+    if (!request_.cacheFile.empty()) loadLight();
 }
 
 /// After the plan, which is that of the whole image.
@@ -339,12 +379,14 @@ std::uint64_t Renderer::raysSoFar() const {
 
 bool Renderer::generationDue() const {
     if (!plan_.cache || iteration_ == 0) return plan_.cache;
+    if (frozen_) return false;
     if (raysSince_ <= kGenerationShare * raysOfGeneration_) return false;
     // Where little light is indirect its records may be the worse.
     const double patience = std::clamp(kMuchIndirect / std::max(film_.indirectShare(), 1e-6), 1.0, kMostPatience);
     if (raysSince_ <= kGenerationShare * patience * raysOfGeneration_) return false;
     // Near the end of a budget of time a new one would not be used enough.
-    const double next = secondsOfGeneration_ * kGenerationGrowth;
+    const double asLearnt = eyeStage_.seconds * raysOfGeneration_ / std::max(1.0, static_cast<double>(eyeStage_.rays));  // if it was loaded
+    const double next = std::max(secondsOfGeneration_, loaded_ ? asLearnt : 0.0) * kGenerationGrowth;
     return !request_.budget.seconds || elapsed() + (1.0 + kGenerationShare) * next <= *request_.budget.seconds;
 }
 
@@ -364,44 +406,81 @@ void Renderer::iterate() {
     secondsOfIteration_ = elapsed() - began - (globalStage_.seconds + cacheStage_.seconds - once);
 }
 
-/// Fresh global photons and fresh records, with an error bound that tightens.
+/// Fresh global photons and fresh records, with an error bound that tightens; or what other views have learnt, and more of it.
 void Renderer::renewGeneration() {
+    if (frozen_) return useFrozen();
     const std::uint64_t raysBefore = globalStage_.rays + cacheStage_.rays;
     const Clock::time_point began = Clock::now();
-    const GenerationSize size = plan_.generation(generation_);
+    LearntLight light = known_ ? *std::exchange(known_, std::nullopt) : LearntLight{};
+    if (!light.cache) {
+        light.seed = request_.seed;
+        light.generation = generation_;
+        light.size = plan_.generation(generation_);
+    }
+    const bool first = !light_.cache;
+    light_ = {};
+    const std::size_t places = light.map ? light.map->points() : 0, records = light.cache ? light.cache->records().size() : 0;
+    const std::uint64_t view = hashOf(survey_);
+    const bool complete = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
     context_.maps.cache = nullptr;
     context_.maps.global = nullptr;
-    if (plan_.globalMap) {
+    if (plan_.globalMap && !complete) {
         const StageTimer timer(globalStage_);
-        const GlobalPass pass = traceGlobalPhotons(scene_, {request_.seed, kGlobalPass + generation_, size.globalPaths}, workers_);
-        RadianceMapOptions options;
-        options.maxRadius = 0.1F * scene_.radius();
-        options.seed = hashCombine(request_.seed, kGlobalPass + generation_);
-        const std::vector<GatherPoint> places = findPlaces(context_, survey_.points, kPlaces, options.seed, workers_);
-        globalMap_ = std::make_unique<RadianceMap>(scene_, pass.photons, places, options, workers_);
-        context_.maps.global = globalMap_.get();
-        globalStage_.rays += pass.rays + globalMap_->rays();
+        const GlobalPass pass = learnMap(context_, survey_, light, workers_);
+        globalStage_.rays += pass.rays;
         globalStage_.photonsEmitted += pass.emitted;
-        addEnergy(globalStage_, pass.energy);
+        if (pass.emitted > 0) addEnergy(globalStage_, pass.energy);
         globalStage_.photonsStored += pass.photons.size();
     }
+    context_.maps.global = light.map.get();
     // Gather rays leave to the caustic map what it will hold, also before its first pass.
     const CausticMap none{PhotonList{}};
     if (plan_.causticMap) context_.maps.caustic = &none;
-    {
+    if (!complete) {
         const StageTimer timer(cacheStage_, windowScale_);
-        CacheBuild build = buildCache(context_, survey_, camera_.width(), plan_, size, hashCombine(request_.seed, kCachePass + generation_),
-                                      workers_, [this] { return progress_.stopAsked() || outOfTime(); });
-        cache_ = std::move(build.cache);
+        CacheBuild build = buildCache(context_, survey_, camera_.width(), plan_, light.size, light.gatherSeed(), workers_,
+                                      [this] { return progress_.stopAsked() || outOfTime(); },
+                                      light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr);
+        light.cache = std::move(build.cache);
         cacheStage_.rays += ofWholeImage(build.rays);
-        cacheStage_.records += cache_->records().size();
+        cacheStage_.records += light.cache->records().size() - records;
+        if (!progress_.stopAsked() && !outOfTime()) light.seen.push_back(view);
+        ++light.views;
     }
     context_.maps.caustic = causticMap_.get();
-    context_.maps.cache = cache_.get();
-    raysOfGeneration_ = static_cast<double>(globalStage_.rays + cacheStage_.rays - raysBefore);
+    context_.maps.cache = light.cache.get();
+    light.rays += static_cast<double>(globalStage_.rays + cacheStage_.rays - raysBefore);
+    if (first && light.map) reuse_.placesReused = places, reuse_.placesNew = light.map->points() - places;
+    if (first) reuse_.recordsReused = records, reuse_.recordsNew = light.cache->records().size() - records;
+    light_ = std::move(light);
+    raysOfGeneration_ = light_.rays;
     raysSince_ = 0.0;
     secondsOfGeneration_ = secondsSince(began);
-    ++generation_;
+    generation_ = light_.generation + 1;
+    if (first && loaded_) saveLight();
+}
+
+void Renderer::useFrozen() {
+    light_ = *frozen_;
+    context_.maps.global = light_.map.get();
+    context_.maps.cache = light_.cache.get();
+    reuse_ = {true, light_.cache->records().size(), 0, light_.map ? light_.map->points() : 0, 0};
+    raysOfGeneration_ = light_.rays;
+    generation_ = light_.generation + 1;
+}
+
+/// What was loaded is saved as soon as this view has added to it: a later generation would know this view alone.
+void Renderer::loadLight() {
+    reuse_.asked = true;
+    if (!plan_.cache) return;
+    known_ = readCacheFile(request_.cacheFile, fileKey(), scene_.bounds());
+    loaded_ = known_.has_value();
+    raysLoaded_ = loaded_ ? known_->rays : 0.0;
+}
+
+void Renderer::saveLight() const {
+    if (request_.cacheFile.empty() || !light_.cache || light_.rays == raysLoaded_) return;
+    writeCacheFile(request_.cacheFile, fileKey(), light_);
 }
 
 /// A photon weighs as much as the image wants it: with E of the caustics, L of the pixel and a kernel of radius r the relative
@@ -666,6 +745,7 @@ RenderRecord Renderer::record() const {
     r.nonfinite = film_.nonfinite();
     r.resolved = resolvedSettings(request_.settings, plan_);
     r.threads = workers_.threads();
+    r.reuse = reuse_;
     if (texels_) r.texels = {texels_->texels(), static_cast<double>(plan_.texelWidth) / scene_.normalisation().scale(), texels_->extrapolated()};
     return r;
 }
@@ -674,14 +754,14 @@ RenderRecord Renderer::record() const {
 void Renderer::addRecordsLayer(Image& image) const {
     bool wanted = false;
     for (const std::string& l : request_.layers) wanted = wanted || l == "records" || l == "all";
-    if (!wanted || !cache_) return;
+    if (!wanted || !light_.cache) return;
     std::vector<std::string> names = image.channelNames();
     names.emplace_back("records.Y");
     Image wider(image.width(), image.height(), names);
     for (std::size_t i = 0; i < image.pixels(); ++i)
         for (int c = 0; c < image.channels(); ++c) wider.at(i, c) = image.at(i, c);
     const int channel = wider.channels() - 1;
-    for (const IrradianceRecord& r : cache_->records()) {
+    for (const IrradianceRecord& r : light_.cache->records()) {
         const auto film = camera_.project(r.position, {0.5F, 0.5F});
         if (!film) continue;
         const int x = static_cast<int>(film->position.x), y = static_cast<int>(film->position.y);
@@ -742,6 +822,56 @@ void Renderer::resume() {
 RenderResult render(const Scene& scene, const RenderRequest& request, const Workers& workers, const Progress& progress, const LogSink& log) {
     (void)log;
     return Renderer(scene, request, workers, progress).run();
+}
+
+void renderViews(const Scene& scene, const RenderRequest& request, const std::vector<std::string>& cameras, const FrameDone& done,
+                 const Workers& workers, const Progress& progress) {
+    RenderRequest frame = request;
+    frame.cacheFile.clear();
+    const Clock::time_point start = Clock::now();
+    std::size_t rendered = 0;
+    Progress ofAll = progress;
+    if (progress.report)
+        ofAll.report = [&](ProgressReport r) {
+            r.fraction = (static_cast<double>(rendered) + r.fraction) / static_cast<double>(cameras.size());
+            r.secondsElapsed = secondsSince(start);
+            if (r.fraction > 0.0) r.secondsLeft = r.secondsElapsed * (1.0 / r.fraction - 1.0);
+            progress.report(r);
+        };
+    const auto forViews = [&](std::size_t passes, const auto& body) {
+        for (std::size_t i = 0; i < passes * cameras.size() && !progress.stopAsked(); ++i) {
+            frame.camera = cameras[i % cameras.size()];
+            body(i);
+        }
+    };
+    // One plan of the caustic map for all: records leave to it what it holds.
+    forViews(1, [&](std::size_t) {
+        if (frame.settings.causticMap == "auto" && Renderer(scene, frame, workers, progress).wantsCausticMap()) frame.settings.causticMap = "on";
+    });
+    std::optional<LearntLight> light;
+    if (!request.cacheFile.empty() && !cameras.empty()) {
+        frame.camera = cameras.front();
+        light = Renderer(scene, frame, workers, progress).fromFile(request.cacheFile);
+    }
+    const double before = light ? light->rays : 0.0;
+    // Twice: what a later view adds shrinks the records of an earlier one beside it.
+    constexpr std::size_t kSweeps = 2;
+    const std::uint32_t generation = cameras.size() >= 8 ? 2 : cameras.size() >= 3 ? 1 : 0;  // the more views share the cost the better
+    forViews(kSweeps, [&](std::size_t i) {
+        if (i >= cameras.size() && (!light || light->rays == before)) return;
+        if (i == cameras.size()) light->seen.clear();
+        light = Renderer(scene, frame, workers, progress).learn(std::move(light), generation);
+    });
+    if (!request.cacheFile.empty() && light && light->rays > before) {
+        frame.camera = cameras.front();
+        Renderer(scene, frame, workers, progress).toFile(request.cacheFile, *light);
+    }
+    forViews(1, [&](std::size_t i) {
+        Renderer renderer(scene, frame, workers, ofAll);
+        if (light) renderer.freeze(*light);
+        done(i, renderer.run());
+        rendered = i + 1;
+    });
 }
 
 SampleReplay replaySample(const Scene& scene, const RenderRequest& request, int x, int y, std::uint32_t sample, const Workers& workers,

@@ -124,6 +124,11 @@ std::string recordJson(const RenderRecord& record, const RecordContext& context)
         json["texel_reference"] = {{"texels", record.texels.texels},
                                    {"width_metres", record.texels.width},
                                    {"extrapolated", record.texels.extrapolated}};
+    if (const ReuseReport& reuse = record.reuse; reuse.asked)
+        json["cache_file"] = {{"records_reused", reuse.recordsReused},
+                              {"records_new", reuse.recordsNew},
+                              {"places_reused", reuse.placesReused},
+                              {"places_new", reuse.placesNew}};
     json["interrupted"] = context.interrupted;
     json["images"] = context.images;
     return dump(json);

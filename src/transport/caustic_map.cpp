@@ -118,5 +118,6 @@ FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometr
 }
 
 std::size_t CausticMap::size() const noexcept { return impl_->photons.size(); }
+const PhotonList& CausticMap::photons() const noexcept { return impl_->photons; }
 
 }  // namespace pellucid

@@ -87,7 +87,11 @@ void IrradianceCache::place(std::uint32_t node, const glm::vec3& lower, float si
     }
 }
 
-void IrradianceCache::index(std::uint32_t record, float reach) { place(0, lower_, size_, record, reach); }
+void IrradianceCache::adopt(const IrradianceRecord& record, float reach) {
+    records_.push_back(record);
+    reaches_.push_back(reach);
+    place(0, lower_, size_, static_cast<std::uint32_t>(records_.size() - 1), reach);
+}
 
 void IrradianceCache::insert(IrradianceRecord record) {
     forNear(record.position, [&](std::uint32_t i) {
@@ -100,9 +104,7 @@ void IrradianceCache::insert(IrradianceRecord record) {
         if (glm::dot(other.normal, record.normal) < 0.5F) return;
         other.radius = std::min(other.radius, record.radius + glm::length(other.position - record.position));
     });
-    const float reach = record.radius * error_;
-    records_.push_back(record);
-    index(static_cast<std::uint32_t>(records_.size() - 1), reach);
+    adopt(record, record.radius * error_);
 }
 
 /// Ward's error of `record` at a point; infinite where it may not speak. [Ward1988]
@@ -116,9 +118,10 @@ static float wardError(const IrradianceRecord& r, const glm::vec3& offset, const
     return error < limit ? error : kSilent;
 }
 
-bool IrradianceCache::covers(const glm::vec3& position, const glm::vec3& normal, float limit) const noexcept {
+bool IrradianceCache::covers(const glm::vec3& position, const glm::vec3& normal, float limit, std::size_t old, float largestOld) const noexcept {
     bool covered = false;
     forNear(position, [&](std::uint32_t i) {
+        if (i < old && records_[i].radius > largestOld) return;
         covered = covered || wardError(records_[i], position - records_[i].position, normal, limit) < limit;
     });
     return covered;

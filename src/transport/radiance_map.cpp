@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include <pellucid/math/constants.h>
 #include <pellucid/math/frame.h>
@@ -28,6 +30,8 @@ constexpr std::size_t kSecondShare = 4;
 constexpr std::uint64_t kPlaceStream = 0x706c6163ULL;
 constexpr std::uint32_t kNobody = 0xffffffffU;
 constexpr std::size_t kSectors = 8;
+/// No place of a map that was read from somewhere is as far from the centre: the scene's radius is about 1.
+constexpr float kFarthest = 1e6F;
 /// Height of the sectors' rays over the surface, as a share of the kernel's radius.
 constexpr float kSectorHeight = 0.05F;
 
@@ -219,6 +223,21 @@ struct RadianceMap::Impl {
     std::unique_ptr<PointTree<RadianceSite>> tree;
     std::uint64_t rays = 0;
     float reach = 0.0F;
+
+    /// Makes ready for look-ups as far as `farthest`.
+    void index(float farthest) {
+        reach = farthest;
+        sites.clear();
+        for (const RadiancePoint& p : points)
+            sites.push_back({p.position, p.normal, p.radius, p.lookup, *std::min_element(p.reach.free.begin(), p.reach.free.end())});
+        tree = std::make_unique<PointTree<RadianceSite>>(sites);
+    }
+
+    [[nodiscard]] std::uint32_t nearest(const glm::vec3& position, const glm::vec3& normal) const noexcept {
+        NearestSite search{sites, points, position, normal, reach * reach};
+        tree->search(position, search);
+        return search.best;
+    }
 };
 
 std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::vector<GatherPoint>& points, std::size_t count,
@@ -249,9 +268,11 @@ std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::
     return found;
 }
 
+RadianceMap::RadianceMap() : impl_(std::make_unique<Impl>()) {}
+
 RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& photons, const std::vector<GatherPoint>& places,
-                         const RadianceMapOptions& options, const Workers& workers)
-    : impl_(std::make_unique<Impl>()) {
+                         const RadianceMapOptions& options, const Workers& workers, const RadianceMap* known)
+    : RadianceMap() {
     struct Indirect {
         glm::vec3 position;
         std::uint32_t photon;
@@ -278,31 +299,57 @@ RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& ph
         points.push_back(p);
     }
     sortAlongMortonCurve(points);
+    const std::size_t fresh = points.size(), before = known != nullptr ? known->impl_->points.size() : 0;
+    if (known != nullptr) points.insert(points.end(), known->impl_->points.begin(), known->impl_->points.end());
     const PointTree<RadiancePoint> neighbours(points);
-    impl_->sites.resize(points.size());
-    workers.forEach(points.size(), 256, [&](std::size_t i) {
+    workers.forEach(fresh, 256, [&](std::size_t i) {
         RadiancePoint& p = points[i];
         p.lookup = std::min(kReach * distanceToNeighbour(neighbours, points, p, options.maxRadius), kReach * options.maxRadius);
     });
-    workers.forEach(points.size(), 256, [&](std::size_t i) {
+    workers.forEach(fresh, 256, [&](std::size_t i) {
         RadiancePoint& p = points[i];
         estimateIndirect(scene, indirect, overSpecular, tree, p, options.neighbours, options.maxRadius);
-        p.irradiance += directIrradiance(scene, p, options.lampSamples, options.seed, i);
-        impl_->sites[i] = {p.position, p.normal, p.radius, p.lookup, *std::min_element(p.reach.free.begin(), p.reach.free.end())};
+        p.irradiance += directIrradiance(scene, p, options.lampSamples, options.seed, before + i);
     });
-    impl_->reach = kReach * options.maxRadius;
-    impl_->rays = points.size() * (static_cast<std::uint64_t>(options.lampSamples) + 2 * kSectors);
-    impl_->tree = std::make_unique<PointTree<RadianceSite>>(impl_->sites);
+    if (before > 0) sortAlongMortonCurve(points);
+    impl_->rays = fresh * (static_cast<std::uint64_t>(options.lampSamples) + 2 * kSectors);
+    impl_->index(kReach * options.maxRadius);
 }
 
 RadianceMap::~RadianceMap() = default;
 
 std::optional<RadianceMap::Found> RadianceMap::find(const glm::vec3& position, const glm::vec3& normal) const noexcept {
-    NearestSite nearest{impl_->sites, impl_->points, position, normal, impl_->reach * impl_->reach};
-    impl_->tree->search(position, nearest);
-    if (nearest.best == kNobody) return std::nullopt;
-    const RadiancePoint& p = impl_->points[nearest.best];
+    const std::uint32_t best = impl_->nearest(position, normal);
+    if (best == kNobody) return std::nullopt;
+    const RadiancePoint& p = impl_->points[best];
     return Found{p.irradiance, p.caustic, p.radius};
+}
+
+bool RadianceMap::covers(const glm::vec3& position, const glm::vec3& normal) const noexcept {
+    const std::uint32_t best = impl_->nearest(position, normal);
+    return best != kNobody && glm::length(position - impl_->points[best].position) <= impl_->points[best].radius;
+}
+
+std::vector<char> RadianceMap::save() const {
+    static_assert(std::is_trivially_copyable_v<RadiancePoint> && sizeof(RadiancePoint) % sizeof(float) == 0);
+    std::vector<char> bytes(sizeof(float) + impl_->points.size() * sizeof(RadiancePoint));
+    std::memcpy(bytes.data(), &impl_->reach, sizeof(float));
+    if (!impl_->points.empty()) std::memcpy(bytes.data() + sizeof(float), impl_->points.data(), bytes.size() - sizeof(float));
+    return bytes;
+}
+
+std::unique_ptr<RadianceMap> RadianceMap::restore(const std::vector<char>& bytes) {
+    if (bytes.size() < sizeof(float) || (bytes.size() - sizeof(float)) % sizeof(RadiancePoint) != 0) return nullptr;
+    std::vector<float> numbers(bytes.size() / sizeof(float));
+    std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    if (!std::all_of(numbers.begin(), numbers.end(), [](float f) { return std::isfinite(f); }) || !(numbers[0] > 0.0F)) return nullptr;
+    std::unique_ptr<RadianceMap> map(new RadianceMap());
+    map->impl_->points.resize((bytes.size() - sizeof(float)) / sizeof(RadiancePoint));
+    if (!map->impl_->points.empty()) std::memcpy(map->impl_->points.data(), bytes.data() + sizeof(float), bytes.size() - sizeof(float));
+    for (const RadiancePoint& p : map->impl_->points)
+        if (!(glm::length(p.position) < kFarthest) || !(p.radius > 0.0F)) return nullptr;
+    map->impl_->index(numbers[0]);
+    return map;
 }
 
 std::size_t RadianceMap::points() const noexcept { return impl_->points.size(); }

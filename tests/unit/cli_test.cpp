@@ -95,6 +95,10 @@ TEST_F(Cli, WrongUse) {
     expectError("render x.glb -o out.exr --spp -1", 1, "--spp");
     expectError("render x.glb -o out.exr --seed -1", 1, "--seed");
     expectError("render x.glb -o out.exr --resume", 1, "checkpoint");
+    expectError("render x.glb -o out.exr --cache c --checkpoint s", 1, "--c");
+    expectError("render x.glb -o out.exr --cache c --method path", 1, "--method photon");
+    expectError("render x.glb -o out.exr --views v.txt --camera 1", 1, "--views");
+    expectError("render x.glb -o out.exr --views v.txt --export-points p", 1, "--views");
     expectError("render x.glb -o out.exr --layers albedos", 1, "'albedo'");
     expectError("render x.glb -o out.tga", 1, ".exr, .png, .hdr, .pfm");
     expectError("diff a.exr", 1, "images");

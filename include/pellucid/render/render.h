@@ -46,6 +46,8 @@ struct RenderRequest {
     std::vector<std::string> layers;        ///< beyond the four that are always there: albedo, normal, depth, variance, records, radius, ... ; "all"
     std::filesystem::path checkpoint;       ///< empty: none
     bool resume = false;
+    std::filesystem::path cacheFile;        ///< what views have learnt of the light: read if it is there, and written; empty: none
+    std::filesystem::path pointsFolder;     ///< for PLY files of records and caustic photons; empty: none
     /// Only these pixels are rendered, the rest stays black; empty: all. Plan and photons are those of the whole image, and
     /// all costs, in the budget and in the record, are scaled up to it: a cheap look at what the whole image would be.
     std::vector<PixelWindow> windows;
@@ -87,8 +89,16 @@ struct TexelReport {
     double extrapolated = 0.0;              ///< relative change of that class by extrapolating the texels' width to 0
 };
 
+/// What a render had from a cache file or from other views.
+struct ReuseReport {
+    bool asked = false;
+    std::size_t recordsReused = 0, recordsNew = 0;  ///< of the irradiance cache, in the first generation
+    std::size_t placesReused = 0, placesNew = 0;    ///< of the global map
+};
+
 struct RenderRecord {
     TexelReport texels;
+    ReuseReport reuse;
     std::vector<Decision> decisions;
     std::vector<CausticLink> causticLinks;  ///< lamp x caster, those that matter most first; empty where no photons are planned
     std::vector<std::string> blindSpots;    ///< path classes that this method cannot see in this scene

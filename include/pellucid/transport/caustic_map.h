@@ -45,6 +45,7 @@ public:
     [[nodiscard]] FluxSums fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept;
 
     [[nodiscard]] std::size_t size() const noexcept;
+    [[nodiscard]] const PhotonList& photons() const noexcept;
 
 private:
     struct Impl;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -46,13 +47,20 @@ public:
     /// Adds a record, clamps its radius and its neighbours' (each by the other's plus their distance).
     void insert(IrradianceRecord record);
 
+    /// Adds a record as it is, found within `reach`: from records() and reaches(), in order, the same cache comes back.
+    void adopt(const IrradianceRecord& record, float reach);
+
     /// Empty where no record speaks.
     [[nodiscard]] std::optional<Irradiance> lookup(const glm::vec3& position, const glm::vec3& normal) const noexcept;
 
-    /// Whether some record speaks there with an error below `limit` (at most error()).
-    [[nodiscard]] bool covers(const glm::vec3& position, const glm::vec3& normal, float limit) const noexcept;
+    /// Whether some record speaks there with an error below `limit` (at most error()). Of the first `old` records only those
+    /// count that have at most this radius: others were made for a view from farther away.
+    [[nodiscard]] bool covers(const glm::vec3& position, const glm::vec3& normal, float limit, std::size_t old = 0,
+                              float largestOld = std::numeric_limits<float>::infinity()) const noexcept;
 
     [[nodiscard]] const std::vector<IrradianceRecord>& records() const noexcept { return records_; }
+    /// By record: how far it is looked for. Its radius may have shrunk since.
+    [[nodiscard]] const std::vector<float>& reaches() const noexcept { return reaches_; }
     [[nodiscard]] float error() const noexcept { return error_; }
 
 private:
@@ -62,7 +70,6 @@ private:
     };
     template <class Visit>
     void forNear(const glm::vec3& point, Visit&& visit) const;
-    void index(std::uint32_t record, float reach);
     void place(std::uint32_t node, const glm::vec3& lower, float size, std::uint32_t record, float reach);
 
     float error_;
@@ -70,6 +77,7 @@ private:
     float size_;
     std::vector<Node> nodes_;
     std::vector<IrradianceRecord> records_;
+    std::vector<float> reaches_;
 };
 
 }  // namespace pellucid

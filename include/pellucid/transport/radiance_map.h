@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <pellucid/base/parallel.h>
 #include <pellucid/scene/scene.h>
@@ -46,17 +47,26 @@ public:
         float radius = 0.0F;   ///< of the density estimate that made it, scene units
     };
 
+    /// `known`: a map whose places stay as they are among the new ones (null: none).
     RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& photons, const std::vector<GatherPoint>& places,
-                const RadianceMapOptions& options, const Workers& workers);
+                const RadianceMapOptions& options, const Workers& workers, const RadianceMap* known = nullptr);
     ~RadianceMap();
 
     /// The nearest precomputed point on a surface of this side within its own radius's reach; empty: none near enough.
     [[nodiscard]] std::optional<Found> find(const glm::vec3& position, const glm::vec3& normal) const noexcept;
 
+    /// Whether a place of the map lies no farther away than the radius of its own estimate.
+    [[nodiscard]] bool covers(const glm::vec3& position, const glm::vec3& normal) const noexcept;
+
+    /// The map as bytes of this machine, and back: the same look-ups. Null where they are no map.
+    [[nodiscard]] std::vector<char> save() const;
+    [[nodiscard]] static std::unique_ptr<RadianceMap> restore(const std::vector<char>& bytes);
+
     [[nodiscard]] std::size_t points() const noexcept;
     [[nodiscard]] std::uint64_t rays() const noexcept;
 
 private:
+    RadianceMap();
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
