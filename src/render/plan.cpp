@@ -25,6 +25,7 @@ constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
 constexpr std::uint32_t kGlobalPaths = 75'000;
 /// Caustic photon paths an iteration: so many that this many are useful, between two bounds.
 constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
+constexpr float kSpacingOfImage = 0.1F;  ///< of its shorter side: the largest radius of a record
 constexpr double kDefaultTimeCap = 120.0;
 
 [[nodiscard]] bool isOff(const std::string& choice) { return choice == "off"; }

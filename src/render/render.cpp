@@ -42,7 +42,7 @@ constexpr double kMuchIndirect = 0.25, kMostPatience = 10.0;
 /// How much longer the next generation takes, about.
 constexpr double kGenerationGrowth = 1.5;
 /// Of a budget of time: a cache that is not full by then stays as it is, and what it lacks is traced.
-constexpr double kCacheShare = 0.7;
+constexpr double kCacheShare = 0.7, kLaterCacheShare = 0.9;
 /// The guide learns from each pass until it holds this many useful starts.
 constexpr std::size_t kTrainingLimit = 400'000;
 /// A pixel counts as at least this share of the image's mean where photons are weighed by need.
@@ -274,7 +274,7 @@ private:
     void keepWindows();
     [[nodiscard]] std::uint64_t ofWholeImage(std::uint64_t rays) const;
     [[nodiscard]] std::uint64_t raysSoFar() const;
-    [[nodiscard]] bool outOfTime() const { return request_.budget.seconds && elapsed() > kCacheShare * *request_.budget.seconds; }
+    [[nodiscard]] bool outOfTime(double share) const { return request_.budget.seconds && elapsed() > share * *request_.budget.seconds; }
     /// With what the passes over pixels would have taken for the whole image.
     [[nodiscard]] double elapsed() const {
         const double overPixels = cacheStage_.seconds + eyeStage_.seconds;
@@ -418,7 +418,8 @@ void Renderer::renewGeneration() {
         light.size = plan_.generation(generation_);
     }
     const bool first = !light_.cache;
-    light_ = {};
+    LearntLight before = std::exchange(light_, {});
+    const auto cut = [this, first] { return progress_.stopAsked() || outOfTime(first ? kCacheShare : kLaterCacheShare); };
     const std::size_t places = light.map ? light.map->points() : 0, records = light.cache ? light.cache->records().size() : 0;
     const std::uint64_t view = hashOf(survey_);
     const bool complete = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
@@ -439,16 +440,23 @@ void Renderer::renewGeneration() {
     if (!complete) {
         const StageTimer timer(cacheStage_, windowScale_);
         CacheBuild build = buildCache(context_, survey_, camera_.width(), plan_, light.size, light.gatherSeed(), workers_,
-                                      [this] { return progress_.stopAsked() || outOfTime(); },
+                                      cut,
                                       light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr);
-        light.cache = std::move(build.cache);
+        const bool whole = !cut();
+        if (!whole && !first) light = std::move(before);  // whole records of the last generation rather than half of this one's
+        else light.cache = std::move(build.cache);
         cacheStage_.rays += ofWholeImage(build.rays);
-        cacheStage_.records += light.cache->records().size() - records;
-        if (!progress_.stopAsked() && !outOfTime()) light.seen.push_back(view);
-        ++light.views;
+        if (whole || first) {
+            cacheStage_.records += light.cache->records().size() - records;
+            if (whole) light.seen.push_back(view);
+            ++light.views;
+        } else {
+            raysSince_ = 0.0;
+        }
     }
     context_.maps.caustic = causticMap_.get();
     context_.maps.cache = light.cache.get();
+    context_.maps.global = light.map.get();
     light.rays += static_cast<double>(globalStage_.rays + cacheStage_.rays - raysBefore);
     if (first && light.map) reuse_.placesReused = places, reuse_.placesNew = light.map->points() - places;
     if (first) reuse_.recordsReused = records, reuse_.recordsNew = light.cache->records().size() - records;
