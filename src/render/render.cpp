@@ -57,6 +57,8 @@ constexpr double kFewestPaths = 4e3, kMostPaths = 4e6;
 constexpr std::uint32_t kCorrectRadiiAfter = 8;
 /// Time of a ray of the caustic photons, with what is made of them, in units of an eye ray's; as measured.
 constexpr double kPhotonRayTime = 1.75;
+/// Kept of a budget for the files, about.
+constexpr double kSecondsToWritePixel = 6e-7;
 /// Of a budget, for one iteration: else it would be overrun.
 constexpr double kMostOfBudget = 0.04;
 
@@ -716,7 +718,8 @@ bool Renderer::finished() const {
     const Budget& b = request_.budget;
     if (b.samples && samplesPerPixel() >= *b.samples) return true;
     if (iteration_ == 0) return false;
-    if (b.seconds && elapsed() + 0.5 * secondsOfIteration_ >= *b.seconds) return true;
+    const double writing = kSecondsToWritePixel * static_cast<double>(film_.pixels());
+    if (b.seconds && elapsed() + 0.5 * secondsOfIteration_ + writing >= *b.seconds) return true;
     if (b.rays) {
         const std::uint64_t once = pilotStage_.rays + globalStage_.rays + cacheStage_.rays, all = raysSoFar();
         if (all + (all - once) / (2 * iteration_) >= *b.rays) return true;

@@ -44,6 +44,7 @@ constexpr std::array<float, 7> kMeans{1.0F, 1.5F, 2.0F, 3.0F, 4.0F, 6.0F, 8.0F};
 struct Need {
     std::vector<float> relative;      ///< eye variance of a sample / (L^2 + e2)
     std::vector<float> rays;
+    std::vector<float> wish;          ///< sqrt(relative / rays)
     double photons = 0.0;             ///< sum of the photons' relative variance
 };
 
@@ -66,12 +67,14 @@ struct Need {
     need.relative = blurred(own, width, height);
     for (std::size_t i = 0; i < noise.size(); ++i)
         need.relative[i] = noise[i].inside ? (1.0F - kOwnShare) * need.relative[i] + kOwnShare * own[i] : 0.0F;
+    need.wish.resize(noise.size());
+    for (std::size_t i = 0; i < noise.size(); ++i) need.wish[i] = std::sqrt(need.relative[i] / need.rays[i]);
     return need;
 }
 
 /// Real-valued samples of a pixel when the price of a ray's worth of variance is `scale`.
 [[nodiscard]] float wanted(const Need& need, std::size_t i, float scale, float most) {
-    return std::clamp(scale * std::sqrt(need.relative[i] / need.rays[i]), 1.0F, most);
+    return std::clamp(scale * need.wish[i], 1.0F, most);
 }
 
 struct Allotment {
@@ -84,7 +87,7 @@ struct Allotment {
     double inside = 0.0;
     for (const PixelNoise& p : noise) inside += p.inside ? 1.0 : 0.0;
     float low = 1e-6F, high = 1e12F;
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0; step < 24; ++step) {
         const float middle = std::sqrt(low) * std::sqrt(high);
         double samples = 0.0;
         for (std::size_t i = 0; i < noise.size(); ++i)
