@@ -8,7 +8,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCheckpoint{"pellucid checkpoint 3\n", "the checkpoint", "delete it and render from the start"};
+constexpr SealedKind kCheckpoint{"pellucid checkpoint 4\n", "the checkpoint", "delete it and render from the start"};
 
 }  // namespace
 
@@ -22,6 +22,8 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     body.put(state.raysOfGeneration);
     body.put(state.raysSince);
     body.put(state.causticPaths);
+    body.put(state.causticRays);
+    body.put(state.causticEmitted);
     for (const std::vector<char>* block : {&state.film, &state.training, &state.radii}) body.putBlock(*block);
     writeSealed(file, kCheckpoint, body.bytes());
 }
@@ -39,6 +41,8 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     state.raysOfGeneration = reader.get<double>();
     state.raysSince = reader.get<double>();
     state.causticPaths = reader.get<std::uint32_t>();
+    state.causticRays = reader.get<std::uint64_t>();
+    state.causticEmitted = reader.get<std::uint64_t>();
     for (std::vector<char>* block : {&state.film, &state.training, &state.radii}) *block = reader.getBlock<std::vector<char>>();
     if (!reader.good()) refuseDamaged(file, kCheckpoint);
     return state;

@@ -19,7 +19,8 @@ struct CheckpointState {
     double raysOfGeneration = 0.0, raysSince = 0.0;
     std::vector<char> film;
     std::vector<char> training, radii;  ///< what guide and kernel radii have learnt
-    std::uint32_t causticPaths = 0;     ///< of an iteration
+    std::uint32_t causticPaths = 0;     ///< of an iteration to come
+    std::uint64_t causticRays = 0, causticEmitted = 0;  ///< of all caustic passes so far
 };
 
 /// The bytes of a checkpoint's file around its body: what it is, and the checksum. (Apart so that the fuzzer can seal bodies.)

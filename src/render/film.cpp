@@ -75,12 +75,6 @@ std::uint64_t Film::taken() const noexcept {
     return sum;
 }
 
-std::uint64_t Film::rays() const noexcept {
-    std::uint64_t sum = 0;
-    for (const Pixel& p : pixels_) sum += p.rays;
-    return sum;
-}
-
 /// An iteration's mean of k samples has the variance of a sample over k: so k (mean - expectation)^2 has that of a sample.
 PixelNoise Film::noise(std::size_t pixel) const noexcept {
     const Pixel& p = pixels_[pixel];
@@ -89,7 +83,6 @@ PixelNoise Film::noise(std::size_t pixel) const noexcept {
     noise.eyeVariance = static_cast<float>(std::max(0.0, p.eyeSquare - p.eyeSum * p.eyeSum / taken) / free);
     noise.photonVariance = static_cast<float>(std::max(0.0, p.sharedSquare - p.sharedSum * p.sharedSum / std::max(1.0, n)) / free);
     noise.luminance = static_cast<float>(p.eyeSum / taken + p.sharedSum / std::max(1.0, n));
-    noise.shared = static_cast<float>(p.sharedSum / std::max(1.0, n));
     noise.rays = static_cast<float>(static_cast<double>(p.rays) / taken);
     const double odd = std::max<std::uint32_t>(1, samples_ / 2), even = std::max<std::uint32_t>(1, samples_ - samples_ / 2);
     noise.blur2 = static_cast<float>(p.blurHalf / odd * ((p.blur - p.blurHalf) / even));

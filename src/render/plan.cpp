@@ -78,6 +78,7 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
                                               : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
     const FittedPaths fitted = fitCausticPaths(plan.causticPaths, plan, scene, request, seen, workers);
     plan.causticPaths = fitted.paths;
+    plan.mostCausticPaths = fitted.most;
     if (s.causticRadius > 0.0) {
         plan.adaptiveRadius = false;
         plan.causticFootprints = static_cast<float>(s.causticRadius);

@@ -261,7 +261,10 @@ private:
     void lightPass();
     void eyePass();
     void renewShares();
-    void setCausticPaths(double paths);
+    void setCausticPaths(std::uint32_t paths);
+    /// With those before a break, which decide alike after it.
+    [[nodiscard]] std::uint64_t causticRaysSoFar() const noexcept { return causticRaysBefore_ + causticStage_.rays; }
+    [[nodiscard]] std::uint64_t causticEmittedSoFar() const noexcept { return causticEmittedBefore_ + causticStage_.photonsEmitted; }
     void makeMaps();
     [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, int number, FirstHit& first, StringSums* strings = nullptr) const;
     [[nodiscard]] std::uint32_t samplesPerPixel() const;
@@ -325,6 +328,7 @@ private:
     double radiusScale_ = 1.0;         ///< squared, of the caustic kernel
     std::vector<bool> inWindow_;       ///< by pixel; empty: all are
     double windowScale_ = 1.0;         ///< pixels of the image / pixels in windows
+    std::uint64_t causticRaysBefore_ = 0, causticEmittedBefore_ = 0;  ///< before a break
     std::uint32_t iteration_ = 0, generation_ = 0;
     double raysOfGeneration_ = 0.0, raysSince_ = 0.0, secondsOfGeneration_ = 0.0, secondsOfIteration_ = 0.0;
     double lastSave_ = 0.0;
@@ -351,7 +355,7 @@ void Renderer::prepare() {
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
     context_.options.splitLampChains = plan_.splitLampChains;
     context_.maps.causticChains = plan_.causticChains;
-    context_.maps.photonsPerEtendue = static_cast<float>(plan_.causticPaths * plan_.guideGain);
+    setCausticPaths(plan_.causticPaths);
     if (!request_.windows.empty()) keepWindows();
     if (!request_.cacheFile.empty()) loadLight();
 }
@@ -591,7 +595,7 @@ void Renderer::renewShares() {
         if (noise[i].inside) eyeRays += static_cast<double>(noise[i].rays);
     }
     ShareLimits limits;
-    if (plan_.causticMap) limits.photonRays = kPhotonRayTime * static_cast<double>(causticStage_.rays) / ((iteration_ + 1) * windowScale_);
+    if (plan_.causticMap) limits.photonRays = kPhotonRayTime * static_cast<double>(causticRaysSoFar()) / ((iteration_ + 1) * windowScale_);
     const Budget& b = request_.budget;
     const double once = eyeStage_.seconds * static_cast<double>(film_.pixels()) / (windowScale_ * static_cast<double>(std::max<std::uint64_t>(1, film_.taken())));
     if (b.seconds) limits.mostMean = static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * *b.seconds / std::max(1e-9, once)));
@@ -599,11 +603,14 @@ void Renderer::renewShares() {
     limits.fixedPhotons = !plan_.causticMap || request_.settings.causticPhotons >= 0;
     const SampleShares chosen = sampleShares(noise, camera_.width(), camera_.height(), limits, hashCombine(request_.seed, n));
     film_.setShares(chosen.ofPixel);
-    if (!limits.fixedPhotons) setCausticPaths(chosen.photons * static_cast<double>(causticStage_.photonsEmitted) / (iteration_ + 1));
+    if (limits.fixedPhotons) return;
+    const double most = plan_.mostCausticPaths > 0 ? std::min<double>(plan_.mostCausticPaths, kMostPaths) : kMostPaths;
+    const double paths = chosen.photons * static_cast<double>(causticEmittedSoFar()) / (iteration_ + 1);
+    setCausticPaths(static_cast<std::uint32_t>(std::clamp(paths, std::min(kFewestPaths, most), most)));
 }
 
-void Renderer::setCausticPaths(double paths) {
-    plan_.causticPaths = static_cast<std::uint32_t>(std::clamp(paths, kFewestPaths, kMostPaths));
+void Renderer::setCausticPaths(std::uint32_t paths) {
+    plan_.causticPaths = paths;
     context_.maps.photonsPerEtendue = static_cast<float>(plan_.causticPaths * plan_.guideGain);
 }
 
@@ -792,7 +799,7 @@ CheckpointKey Renderer::checkpointKey() const {
 }
 
 void Renderer::save() const {
-    CheckpointState state{iteration_, generation_, raysOfGeneration_, raysSince_, film_.save(), {}, {}, plan_.causticPaths};
+    CheckpointState state{iteration_, generation_, raysOfGeneration_, raysSince_, film_.save(), {}, {}, plan_.causticPaths, causticRaysSoFar(), causticEmittedSoFar()};
     state.training.resize(plan_.training.size() * sizeof(UsefulEmission));
     if (!plan_.training.empty()) std::memcpy(state.training.data(), plan_.training.data(), state.training.size());
     if (kernelRadii_) state.radii = kernelRadii_->save();
@@ -811,7 +818,9 @@ void Renderer::saveWhenDue(bool now) {
 void Renderer::resume() {
     const auto state = readCheckpoint(request_.checkpoint, checkpointKey());
     if (!state) return;
-    plan_.causticPaths = state->causticPaths;
+    setCausticPaths(state->causticPaths);
+    causticRaysBefore_ = state->causticRays;
+    causticEmittedBefore_ = state->causticEmitted;
     if (!film_.restore(state->film) || state->training.size() % sizeof(UsefulEmission) != 0 ||
         (kernelRadii_ && !kernelRadii_->restore(state->radii, workers_)))
         throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", request_.checkpoint.string(), "delete it or render without --resume");

@@ -20,23 +20,16 @@ constexpr double kBiasAndNoise = 3.0;
 constexpr std::array<double, 7> kPhotons{0.125, 0.25, 0.5, 0.7, 1.0, 1.4, 2.0};
 constexpr std::array<float, 7> kMeans{1.0F, 1.5F, 2.0F, 3.0F, 4.0F, 6.0F, 8.0F};
 
-/// Means over squares of (2 kNeighbours + 1)^2, cut at the border.
-[[nodiscard]] std::vector<float> blurred(const std::vector<float>& value, int width, int height) {
-    const auto at = [width](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); };
-    std::vector<float> rows(value.size()), result(value.size());
+/// Means over rows of 2 kNeighbours + 1 values, cut at the ends; the result lies transposed.
+[[nodiscard]] std::vector<float> blurredRows(const std::vector<float>& value, int width, int height) {
+    std::vector<float> result(value.size());
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const int first = std::max(0, x - kNeighbours), last = std::min(width - 1, x + kNeighbours);
             float sum = 0.0F;
-            for (int i = first; i <= last; ++i) sum += value[at(i, y)];
-            rows[at(x, y)] = sum / static_cast<float>(last - first + 1);
-        }
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const int first = std::max(0, y - kNeighbours), last = std::min(height - 1, y + kNeighbours);
-            float sum = 0.0F;
-            for (int i = first; i <= last; ++i) sum += rows[at(x, i)];
-            result[at(x, y)] = sum / static_cast<float>(last - first + 1);
+            for (int i = first; i <= last; ++i) sum += value[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)];
+            result[static_cast<std::size_t>(x) * static_cast<std::size_t>(height) + static_cast<std::size_t>(y)] =
+                sum / static_cast<float>(last - first + 1);
         }
     return result;
 }
@@ -64,7 +57,7 @@ struct Need {
         need.rays[i] = std::max(1.0F, p.rays);
         if (p.inside) need.photons += static_cast<double>(p.photonVariance / reference);
     }
-    need.relative = blurred(own, width, height);
+    need.relative = blurredRows(blurredRows(own, width, height), height, width);
     for (std::size_t i = 0; i < noise.size(); ++i)
         need.relative[i] = noise[i].inside ? (1.0F - kOwnShare) * need.relative[i] + kOwnShare * own[i] : 0.0F;
     need.wish.resize(noise.size());
@@ -113,7 +106,7 @@ struct Allotment {
 }  // namespace
 
 SampleShares sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
-                                       std::uint64_t seed) {
+                          std::uint64_t seed) {
     const Need need = needOf(noise, width, height);
     Allotment best;
     for (const float mean : kMeans) {

@@ -31,6 +31,6 @@ struct SampleShares {
 
 /// `seed` keys the rounding.
 [[nodiscard]] SampleShares sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
-                                                     std::uint64_t seed);
+                                        std::uint64_t seed);
 
 }  // namespace pellucid

@@ -19,12 +19,7 @@ constexpr float kSurvivalBeyond = 0.9995F;
 
 }  // namespace
 
-bool LampChains::splits(const Bsdf& bsdf, const glm::vec3& wo) noexcept {
-    return (bsdf.kinds() & kSpecular) != kNoLobe && bsdf.deltaBranches(wo, TransportMode::Radiance).count > 1;
-}
-
-void LampChains::branchOff(const ChainVertex& vertex, Sampler& sampler) {
-    const DeltaBranches branches = vertex.bsdf.deltaBranches(vertex.wo, TransportMode::Radiance);
+void LampChains::branchOff(const ChainVertex& vertex, const DeltaBranches& branches, Sampler& sampler) {
     const glm::vec3& ng = vertex.bsdf.geometricNormal();
     for (int i = 0; i < branches.count; ++i) {
         const BsdfSample& way = branches.branch[static_cast<std::size_t>(i)];
@@ -45,10 +40,13 @@ void LampChains::branchOff(const ChainVertex& vertex, Sampler& sampler) {
     }
 }
 
-void LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadiance& sum) {
+bool LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadiance& sum) {
+    if ((vertex.bsdf.kinds() & kSpecular) == kNoLobe) return false;
+    const DeltaBranches first = vertex.bsdf.deltaBranches(vertex.wo, TransportMode::Radiance);
+    if (first.count < 2) return false;
     sampler.setDimension(kDimension);
     waiting_.clear();
-    branchOff(vertex, sampler);
+    branchOff(vertex, first, sampler);
     while (!waiting_.empty()) {
         const Branch b = waiting_.back();
         waiting_.pop_back();
@@ -67,8 +65,10 @@ void LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadi
         if (!isBlack(emitted)) sum.add(b.ledger.path(), throughput * emitted);
         const int vertices = b.vertices + 1;
         if ((bsdf.kinds() & (kSpecular | kGlossy)) != kNoLobe && (maxDepth_ == 0 || vertices <= maxDepth_))
-            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.ledger, vertices}, sampler);
+            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.ledger, vertices}, bsdf.deltaBranches(wo, TransportMode::Radiance),
+                      sampler);
     }
+    return true;
 }
 
 }  // namespace pellucid

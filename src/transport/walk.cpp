@@ -56,11 +56,8 @@ struct Walk::State {
     float kernelRadius = 0.0F;       ///< at that D vertex
     bool causticServed = false;      ///< at this D vertex: what comes over S alone is counted
 
-    /// Of a lamp that was met.
-    void addLamp(const Rgb& light) {
-        radiance.add(ledger.path(), light);
-        if (onlyChains && !chainEmpty) radiance.chains += luminance(light);
-    }
+    /// Whether light that is met now has come over S alone to a receiver whose caustics photons share.
+    [[nodiscard]] bool hasSharedChain() const noexcept { return chainsShared && chainSpecular && !chainEmpty; }
     /// Whether a lamp that is met now belongs to path tracing.
     [[nodiscard]] bool lampCounts(const LeftClasses& left) const noexcept {
         if (left.has(ledger.path()) || (deltaChain && lampsFollowed)) return false;
@@ -107,9 +104,8 @@ void Walk::addEscaped(State& state) const noexcept {
     float weight = 1.0F;
     if (state.lampSampled)
         weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
-    if (state.chainsShared && state.chainSpecular && !state.chainEmpty)
-        weight *= chainShare(state, context_.scene.lights().environmentLight(), state.ray.ray.direction);
-    state.addLamp(state.throughput * environment->radiance(state.ray.ray.direction) * weight);
+    if (state.hasSharedChain()) weight *= chainShare(state, context_.scene.lights().environmentLight(), state.ray.ray.direction);
+    state.radiance.add(state.ledger.path(), state.throughput * environment->radiance(state.ray.ray.direction) * weight);
 }
 
 void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
@@ -121,9 +117,9 @@ void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
         weight = hitWeight(state.pdfSolidAngle,
                            context_.scene.lights().pdfTriangle(state.lightPoint, state.lightNormal, hit.point.geometry, hit.point.primitive,
                                                                state.ray.ray.direction, hit.distance));
-    if (state.chainsShared && state.chainSpecular && !state.chainEmpty)
+    if (state.hasSharedChain())
         weight *= chainShare(state, context_.scene.lights().lightOf(hit.point.geometry, hit.point.primitive), state.ray.ray.direction);
-    state.addLamp(state.throughput * emitted * weight);
+    state.radiance.add(state.ledger.path(), state.throughput * emitted * weight);
 }
 
 /// Hands the D lobe to the maps. Returns kDiffuse when path tracing has to carry it on.
@@ -216,9 +212,8 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     for (std::size_t i = 0; i < 3; ++i)
         if (!isBlack(sum[i])) {
             const bool shared = i == 0 && state.chainsShared && state.chainSpecular;  // over S alone
-            const Rgb seen = state.throughput * arriving * sum[i] * (shared ? chainShare(state, light->light, light->wi) : 1.0F);
-            state.radiance.add(state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)), seen);
-            if (state.onlyChains) state.radiance.chains += luminance(seen);
+            state.radiance.add(state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)),
+                               state.throughput * arriving * sum[i] * (shared ? chainShare(state, light->light, light->wi) : 1.0F));
         }
 }
 
@@ -313,11 +308,9 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     }
     const LobeKinds kinds = state.onlyChains ? bsdf.kinds() & kSpecular : bsdf.kinds();
     if (kinds == kNoLobe || (context_.options.maxDepth > 0 && state.vertices > context_.options.maxDepth)) return false;
-    if (context_.options.splitLampChains && state.deltaChain && !state.gathering && !state.lampsFollowed && LampChains::splits(bsdf, wo)) {
-        state.lampsFollowed = true;
-        lampChains_.follow({*hit, bsdf, wo, state.throughput, state.ray.absorption, state.etaScale, state.ledger, state.vertices}, sampler,
-                           state.radiance);
-    }
+    if (context_.options.splitLampChains && state.deltaChain && !state.gathering && !state.lampsFollowed)
+        state.lampsFollowed = lampChains_.follow(
+            {*hit, bsdf, wo, state.throughput, state.ray.absorption, state.etaScale, state.ledger, state.vertices}, sampler, state.radiance);
     LobeKinds sampled = kinds & (kSpecular | kGlossy);
     LobeKinds direct = kinds;
     state.causticServed = state.chainsNext = state.sharedNext = false;

@@ -98,6 +98,26 @@ void expectSameBits(const Image& a, const Image& b) {
         for (int c = 0; c < a.channels(); ++c) ASSERT_EQ(a.at(i, c), b.at(i, c)) << "pixel " << i << ", channel " << c;
 }
 
+/// Photon paths are as many as their noise is worth: what decides that must outlive the break, too.
+TEST(EyeSamples, PhotonsByNoiseKeepTheBitsOverABreak) {
+    const SmallScene small = glint();
+    const Workers one(1), two(2);
+    const Scene scene(small.scene, small.environment, SceneOptions{}, one);
+    RenderRequest request = adaptiveRequest(60);
+    setParameter(request.settings, "photon.caustic", "auto");
+    setParameter(request.settings, "photon.chance", "on");
+    const Image whole = render(scene, request, two).image;
+    RenderRequest broken = request;
+    broken.budget.samples = 12;
+    broken.checkpoint = std::filesystem::temp_directory_path() / ("pellucid-photons-by-noise-" + std::to_string(::getpid()));
+    (void)render(scene, broken, one);
+    broken.budget.samples = 60;
+    broken.resume = true;
+    const Image resumed = render(scene, broken, one).image;
+    std::filesystem::remove(broken.checkpoint);
+    expectSameBits(whole, resumed);
+}
+
 TEST(EyeSamples, SharesByNoiseKeepTheBits) {
     const SmallScene small = glint();
     const Workers one(1), three(3);

@@ -22,7 +22,7 @@ struct PixelNoise {
     float eyeVariance = 0.0F;         ///< of the luminance of an eye sample
     float photonVariance = 0.0F;      ///< of the luminance that an iteration's photons give
     float blur2 = 0.0F;               ///< square of the kernels' bias, free of its own noise: may be negative
-    float luminance = 0.0F, shared = 0.0F;  ///< mean, and what of it photons gave
+    float luminance = 0.0F;
     float rays = 1.0F;                ///< of an eye sample
     bool inside = true;               ///< false: not rendered
 };
@@ -50,7 +50,6 @@ public:
     [[nodiscard]] std::uint32_t taken(std::size_t pixel) const noexcept { return pixels_[pixel].taken; }
     void setShares(const std::vector<std::uint8_t>& shares) noexcept;
     [[nodiscard]] std::uint64_t taken() const noexcept;
-    [[nodiscard]] std::uint64_t rays() const noexcept;  ///< of all samples
     /// What `pixel` has shown of its noise. From two iterations on.
     [[nodiscard]] PixelNoise noise(std::size_t pixel) const noexcept;
 

@@ -38,6 +38,7 @@ struct Plan {
     float alpha = 2.0F / 3.0F;
     float cacheError = 0.25F;
     int gatherRays = 128;                ///< a record, in the first generation
+    std::uint32_t mostCausticPaths = 0;  ///< of any iteration, for photon.memory; 0: no limit
     std::uint32_t mostGlobalPaths = 0;   ///< of any generation, for photon.memory; 0: no limit
     bool growPhotons = true, growRays = true;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints

@@ -30,12 +30,9 @@ public:
     /// `maxDepth`: surface vertices of the longest chain; 0: no limit.
     LampChains(const Scene& scene, int maxDepth) noexcept : scene_(scene), maxDepth_(maxDepth) {}
 
-    /// Whether chains split at this surface: at least two delta branches leave it.
-    [[nodiscard]] static bool splits(const Bsdf& bsdf, const glm::vec3& wo) noexcept;
-
-    /// Adds all that comes from lamps and environment over delta lobes at `vertex` and behind it. Draws from the
-    /// sampler's dimensions from kDimension on.
-    void follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadiance& sum);
+    /// Adds all that comes from lamps and environment over delta lobes at `vertex` and behind it, and returns true; where
+    /// the chain does not split there (fewer than two delta branches) does nothing. Draws from dimensions of its own.
+    [[nodiscard]] bool follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadiance& sum);
 
     [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
 
@@ -47,7 +44,7 @@ private:
         EyeLedger ledger;
         int vertices;
     };
-    void branchOff(const ChainVertex& vertex, Sampler& sampler);
+    void branchOff(const ChainVertex& vertex, const DeltaBranches& branches, Sampler& sampler);
 
     const Scene& scene_;
     int maxDepth_;

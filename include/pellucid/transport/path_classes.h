@@ -103,7 +103,6 @@ using StringSums = std::vector<std::pair<PathString, Rgb>>;
 struct LayeredRadiance {
     std::array<Rgb, kPathClasses> layer{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};
     float shared = 0.0F;            ///< luminance of what photons gave, which other samples of the iteration see too
-    float chains = 0.0F;            ///< luminance of caustics that S chains behind a cached D vertex brought
     float blur = 0.0F;              ///< luminance: estimated bias of the kernels in it
     StringSums* strings = nullptr;  ///< not owned; receives the same radiance by string
 
@@ -116,7 +115,6 @@ struct LayeredRadiance {
     void addShare(const LayeredRadiance& other, float weight) {
         for (std::size_t l = 0; l < layer.size(); ++l) layer[l] += other.layer[l] * weight;
         shared += other.shared * weight;
-        chains += other.chains * weight;
         blur += other.blur * weight;
         if (strings != nullptr && other.strings != nullptr)
             for (const auto& [path, radiance] : *other.strings) strings->emplace_back(path, radiance * weight);
