@@ -21,9 +21,11 @@ namespace {
 constexpr std::array<std::string_view, 4> kImageExtensions{".exr", ".png", ".hdr", ".pfm"};
 constexpr std::array<std::string_view, 1> kMapExtensions{".png"}, kPlotExtensions{".svg"};
 
-const std::map<std::string, Method> kMethods{
-    {"photon", Method::Photon}, {"path", Method::Path}, {"light", Method::Light}, {"reference", Method::Reference},
-    {"bdpt", Method::Bdpt}};
+const std::map<std::string, Method> kMethods{{"photon", Method::Photon},
+                                             {"path", Method::Path},
+                                             {"light", Method::Light},
+                                             {"reference", Method::Reference},
+                                             {"bdpt", Method::Bdpt}};
 
 /// Option texts as typed, until all are known: a --config is read before the first --set, wherever they stand.
 struct TypedText {
@@ -68,7 +70,8 @@ void addPictureOptions(CLI::App& app, SceneArguments& common, TypedText& typed) 
     app.add_option("--seed", common.seed, "another seed makes other noise (default: 0)")
         ->check(CLI::NonNegativeNumber)
         ->type_name("N");
-    addRepeatable(app, "--set", typed.set, "a parameter by name (see `pellucid options`); repeatable, after --config")->type_name("KEY=VALUE");
+    addRepeatable(app, "--set", typed.set, "a parameter by name (see `pellucid options`); repeatable, after --config")
+        ->type_name("KEY=VALUE");
     app.add_option("--config", typed.config, "parameters from a TOML file")->type_name("FILE.toml");
 }
 
@@ -116,7 +119,8 @@ struct Parser {
     CheckArguments check;
     CompareArguments compare;
     TuneArguments tune;
-    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand, *compareCommand, *tuneCommand, *checkCommand, *optionsCommand;
+    CLI::App *renderCommand, *planCommand, *infoCommand, *diffCommand, *compareCommand, *tuneCommand, *checkCommand,
+        *optionsCommand;
 
     Parser() {
         app.require_subcommand(1);
@@ -141,26 +145,29 @@ struct Parser {
             ->type_name("OUT.exr|.png|.hdr|.pfm");
         command->add_option("--exposure", render.exposure, "stops of exposure, for PNG only")->type_name("EV");
         command
-            ->add_option("--layers", typed.layers,
-                         "more layers in the EXR: albedo, normal, depth, variance, records, "
-                         "radius, photons, classes (each path class by itself), all (but classes) or none; emission, direct, "
-                         "caustic and indirect are always there")
+            ->add_option(
+                "--layers", typed.layers,
+                "more layers in the EXR: albedo, normal, depth, variance, records, "
+                "radius, photons, classes (each path class by itself), all (but classes) or none; emission, direct, "
+                "caustic and indirect are always there")
             ->type_name("A,B,...");
         command->add_option("--record", render.record, "what was done, as JSON")->type_name("FILE.json");
         CLI::Option* checkpoint =
             command->add_option("--checkpoint", render.checkpoint, "state to go on from")->type_name("FILE");
         command->add_flag("--resume", render.resume, "go on from the checkpoint")->needs(checkpoint);
         command
-            ->add_option("--cache", render.cache,
-                         "records and global map of this scene's light: read if the file is there, and written with what "
-                         "this view adds. A file of another scene or of other settings is refused")
+            ->add_option(
+                "--cache", render.cache,
+                "records and global map of this scene's light: read if the file is there, and written with what "
+                "this view adds. A file of another scene or of other settings is refused")
             ->excludes(checkpoint)
             ->type_name("FILE");
         command
-            ->add_option("--views", render.views,
-                         "a flythrough: an image for each camera of FILE, which has lines `eye X Y Z target X Y Z [up X Y Z] "
-                         "[fov DEGREES]`, or for each of the scene's own; out.exr gives out.0000.exr, ... All share one "
-                         "irradiance cache; the budget is that of each image")
+            ->add_option(
+                "--views", render.views,
+                "a flythrough: an image for each camera of FILE, which has lines `eye X Y Z target X Y Z [up X Y Z] "
+                "[fov DEGREES]`, or for each of the scene's own; out.exr gives out.0000.exr, ... All share one "
+                "irradiance cache; the budget is that of each image")
             ->excludes(checkpoint)
             ->type_name("FILE|all");
         command
@@ -168,9 +175,10 @@ struct Parser {
                          "folder for records.ply and caustic-photons.ply: point clouds for Blender or MeshLab")
             ->type_name("DIR");
         command
-            ->add_option("--debug-sample", typed.sample,
-                         "instead of rendering, take sample S (from 0) of pixel X,Y again and print its path, vertex by "
-                         "vertex")
+            ->add_option(
+                "--debug-sample", typed.sample,
+                "instead of rendering, take sample S (from 0) of pixel X,Y again and print its path, vertex by "
+                "vertex")
             ->type_name("X,Y,S");
         command->footer(
             "Examples:\n  pellucid render scene.glb -o out.exr -o out.png --time 30\n"
@@ -236,7 +244,9 @@ struct Parser {
                          "photon, path, bdpt, light, reference, each with settings of its own after a colon")
             ->required()
             ->type_name("M[:KEY=VALUE+...],...");
-        command->add_option("--times", typed.times, "budgets of each run, in seconds")->required()->type_name("S,S,...");
+        command->add_option("--times", typed.times, "budgets of each run, in seconds")
+            ->required()
+            ->type_name("S,S,...");
         command->add_option("--seeds", compare.seeds, "independent runs of each method and time (default: 8)")
             ->check(CLI::Range(1, 1000))
             ->type_name("K");
@@ -251,7 +261,8 @@ struct Parser {
             ->check(CLI::PositiveNumber)
             ->type_name("S");
         command->footer(
-            "Runs that are finished in DIR are not rendered again: the same command goes on after an interruption, and\n"
+            "Runs that are finished in DIR are not rendered again: the same command goes on after an interruption, "
+            "and\n"
             "more methods, times or seeds add to what is there.\n"
             "Examples:\n  pellucid compare scene.glb -o study --methods path,photon --times 1,2,4,8 --seeds 8\n"
             "  pellucid compare scene.glb -o study --methods photon,photon:cache.error=0.1+cache.rays=256 --times 2,8\n"
@@ -298,7 +309,8 @@ struct Parser {
                          "image to measure against; layers variance.* and mask.Y are used. Without it one is made")
             ->type_name("FILE");
         command->footer(
-            "The same command goes on after an interruption, and with a larger --budget; another --for picks from what is\n"
+            "The same command goes on after an interruption, and with a larger --budget; another --for picks from what "
+            "is\n"
             "measured already.\n"
             "Examples:\n  pellucid tune scene.glb -o tuning --time 10 --budget 600\n"
             "  pellucid tune scene.glb -o tuning --time 10 --budget 600 --over cache.error=0.05..0.5,cache.rays\n"
@@ -320,13 +332,16 @@ struct Parser {
         CLI::App* command = app.add_subcommand("check", "the numerical suite: closed forms, extremes, invariants");
         command->add_option("--filter", check.filter, "only cases with this in their name")->type_name("NAME");
         CLI::Option* json = command->add_flag("--json", check.json, "for programs");
-        CLI::Option* markdown = command->add_flag("--markdown", check.markdown, "the page docs/validation.md")->excludes(json);
+        CLI::Option* markdown =
+            command->add_flag("--markdown", check.markdown, "the page docs/validation.md")->excludes(json);
         CLI::Option* quick = command->add_flag("--quick", check.quick, "leave out the slow cases");
         command
             ->add_flag("--sweeps", check.sweeps,
                        "instead of the cases, the sweeps of stiffness: error and time over decades of a dial")
             ->excludes(quick);
-        command->add_flag("--list", check.list, "the names of the cases and what each guards; nothing is run")->excludes(json)->excludes(markdown);
+        command->add_flag("--list", check.list, "the names of the cases and what each guards; nothing is run")
+            ->excludes(json)
+            ->excludes(markdown);
         command->add_option("--plot", check.plot, "draw the sweeps of --sweeps or --markdown")->type_name("OUT.svg");
         command->add_option("--threads", check.threads, "worker threads; 0: all. No figure depends on it")
             ->check(CLI::Range(0, 1024))
@@ -335,8 +350,9 @@ struct Parser {
             ->check(CLI::NonNegativeNumber)
             ->type_name("N");
         command->add_flag("--quiet", check.quiet, "print nothing but the report and errors");
-        command->footer("Examples:\n  pellucid check --quick\n  pellucid check --filter closed-form --json\n"
-                        "  pellucid check --sweeps --filter 'lamp size' --plot sweeps.svg");
+        command->footer(
+            "Examples:\n  pellucid check --quick\n  pellucid check --filter closed-form --json\n"
+            "  pellucid check --sweeps --filter 'lamp size' --plot sweeps.svg");
         return command;
     }
 
@@ -365,9 +381,12 @@ struct Parser {
             if (!typed.layers.empty()) render.layers = parseLayers(typed.layers);
             resolve(render.common, typed);
             if (!render.cache.empty() && render.common.method != Method::Photon)
-                throw Error(ErrorKind::Usage, "only --method photon has an irradiance cache", "--cache", "leave --cache or --method away");
-            if (!render.views.empty() && (!render.common.camera.empty() || !render.pointsFolder.empty() || render.debugSample))
-                throw Error(ErrorKind::Usage, "--camera, --export-points and --debug-sample are for one view", "--views", "leave --views away, or them");
+                throw Error(ErrorKind::Usage, "only --method photon has an irradiance cache", "--cache",
+                            "leave --cache or --method away");
+            if (!render.views.empty() &&
+                (!render.common.camera.empty() || !render.pointsFolder.empty() || render.debugSample))
+                throw Error(ErrorKind::Usage, "--camera, --export-points and --debug-sample are for one view",
+                            "--views", "leave --views away, or them");
             return render;
         }
         if (planCommand->parsed()) {
@@ -396,8 +415,9 @@ struct Parser {
     std::string line = "pellucid";
     for (int i = 1; i < count; ++i) {
         const std::string word = values[i];
-        const bool plain = !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                                   "0123456789-_=+,.:/%@") == std::string::npos;
+        const bool plain = !word.empty() && word.find_first_not_of(
+                                                "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                "0123456789-_=+,.:/%@") == std::string::npos;
         std::string quoted;
         for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
         line += plain ? " " + word : " '" + quoted + "'";

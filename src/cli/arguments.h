@@ -26,7 +26,7 @@ struct SceneArguments {
     int threads = 0;
     Method method = Method::Photon;
     Budget budget;
-    Settings settings;  ///< defaults, then --config, then each --set in turn
+    Settings settings;             ///< defaults, then --config, then each --set in turn
     std::string config, tunedFor;  ///< the --config file, and the hash of the scene it was tuned for
     bool quiet = false;
 };
@@ -43,7 +43,7 @@ struct RenderArguments {
     float exposure = 0.0F;
     std::vector<std::string> layers;
     std::string record, checkpoint, cache, pointsFolder;
-    std::string views;        ///< file of cameras, or "all": those of the scene; empty: one image
+    std::string views;  ///< file of cameras, or "all": those of the scene; empty: one image
     bool resume = false;
     std::optional<SampleName> debugSample;  ///< replay this one instead of rendering
 };
@@ -69,23 +69,23 @@ struct DiffArguments {
 };
 
 struct CompareArguments {
-    SceneArguments common;    ///< its method and budget are not used
+    SceneArguments common;  ///< its method and budget are not used
     std::vector<CompareMethod> methods;
     std::vector<double> times;
-    int seeds = 8;            ///< common.seed is the first
+    int seeds = 8;  ///< common.seed is the first
     std::string folder, reference;
     double referenceTime = 0.0;
-    std::string command;      ///< as typed, for the report
+    std::string command;  ///< as typed, for the report
 };
 
 struct TuneArguments {
-    SceneArguments common;    ///< its method and budget are not used
+    SceneArguments common;  ///< its method and budget are not used
     double time = 0.0, budget = 0.0;
-    int iterations = 0;       ///< in place of the budget when above 0
+    int iterations = 0;  ///< in place of the budget when above 0
     std::vector<TuneOver> over;
     std::optional<TuneGoal> goal;
     std::string folder, reference;
-    std::string command;      ///< as typed, for the report
+    std::string command;  ///< as typed, for the report
 };
 
 struct CheckArguments {
@@ -103,8 +103,8 @@ struct TextArguments {
     std::string text;
 };
 
-using Arguments = std::variant<RenderArguments, PlanArguments, InfoArguments, DiffArguments, CompareArguments, TuneArguments,
-                               CheckArguments, TextArguments>;
+using Arguments = std::variant<RenderArguments, PlanArguments, InfoArguments, DiffArguments, CompareArguments,
+                               TuneArguments, CheckArguments, TextArguments>;
 
 /// Throws Error{Usage}; Error{BadInput} for what is wrong inside of the --config file.
 [[nodiscard]] Arguments parseArguments(int count, const char* const* values);

@@ -19,9 +19,10 @@ namespace {
 /// Sweeps, drawn where that is asked for.
 [[nodiscard]] std::vector<Sweep> sweep(const CheckArguments& arguments, const Workers& workers, const LogSink& log) {
     if (!arguments.plot.empty()) checkFolderWritable(arguments.plot);
-    std::vector<Sweep> sweeps = runSweeps({workers, arguments.seed}, arguments.sweeps ? arguments.filter : "", [&](const Sweep& s) {
-        logTo(log, LogLevel::Info, "sweep, " + s.name + " " + figure(s.steps.back().value) + " done");
-    });
+    std::vector<Sweep> sweeps =
+        runSweeps({workers, arguments.seed}, arguments.sweeps ? arguments.filter : "", [&](const Sweep& s) {
+            logTo(log, LogLevel::Info, "sweep, " + s.name + " " + figure(s.steps.back().value) + " done");
+        });
     if (sweeps.empty())
         throw Error(ErrorKind::Usage, "no sweep has '" + arguments.filter + "' in its name", "--filter",
                     "--sweeps --list shows all names");
@@ -32,7 +33,8 @@ namespace {
 /// One line a case; those that --quick leaves out say so.
 [[nodiscard]] std::string listed(const std::vector<const CheckCase*>& cases) {
     TextTable table({"case", "group", "", "guards"});
-    for (const CheckCase* c : cases) table.add({c->name, std::string(groupName(c->group)), c->quick ? "" : "slow", c->guards});
+    for (const CheckCase* c : cases)
+        table.add({c->name, std::string(groupName(c->group)), c->quick ? "" : "slow", c->guards});
     return table.text();
 }
 [[nodiscard]] std::string listedSweeps(std::string_view filter) {
@@ -52,9 +54,10 @@ int runCheck(const CheckArguments& arguments) {
     if (arguments.sweeps) {
         const Workers workers(arguments.threads);
         const std::vector<Sweep> sweeps = sweep(arguments, workers, terminalLog(arguments.quiet));
-        printResult(arguments.markdown ? sweepsMarkdown(sweeps, std::filesystem::path(arguments.plot).filename().string())
-                    : arguments.json   ? sweepsJson(sweeps)
-                                       : sweepsTable(sweeps));
+        printResult(arguments.markdown
+                        ? sweepsMarkdown(sweeps, std::filesystem::path(arguments.plot).filename().string())
+                    : arguments.json ? sweepsJson(sweeps)
+                                     : sweepsTable(sweeps));
         return 0;
     }
     const auto chosen = selectChecks(arguments.filter, arguments.quick);
@@ -76,8 +79,8 @@ int runCheck(const CheckArguments& arguments) {
                   (result.passed() ? " ok, " : " FAILED, ") + duration(result.seconds));
     }
     if (arguments.markdown && arguments.filter.empty() && !arguments.quick)
-        printResult(checkMarkdown(report) +
-                    sweepsMarkdown(sweep(arguments, workers, log), std::filesystem::path(arguments.plot).filename().string()));
+        printResult(checkMarkdown(report) + sweepsMarkdown(sweep(arguments, workers, log),
+                                                           std::filesystem::path(arguments.plot).filename().string()));
     else if (arguments.markdown)
         printResult(checkMarkdown(report));
     else

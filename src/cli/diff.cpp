@@ -38,10 +38,10 @@ namespace {
     row.file = arguments.images[index];
     Image image = readCropped(row.file, arguments);
     if (image.width() != reference.width() || image.height() != reference.height())
-        throw Error(ErrorKind::BadInput,
-                    "the images have different sizes: " + sizeText(image) + " against the reference's " +
-                        sizeText(reference),
-                    row.file, "render both at the same --size, or give a --crop that both have");
+        throw Error(
+            ErrorKind::BadInput,
+            "the images have different sizes: " + sizeText(image) + " against the reference's " + sizeText(reference),
+            row.file, "render both at the same --size, or give a --crop that both have");
     if (arguments.exposureInvariant) {
         row.scale = exposureScale(reference, image);
         const double bias = compareImages(reference, image, false).bias;

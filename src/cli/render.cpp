@@ -89,9 +89,8 @@ void tellResult(const RenderResult& result, const RecordContext& context, const 
         logTo(log, LogLevel::Warning,
               std::to_string(bad.count) + " samples were not finite and count as black; the first: pixel " +
                   std::to_string(bad.x) + "," + std::to_string(bad.y) + ", sample " + std::to_string(bad.sample) +
-                  ", seed " + std::to_string(context.seed) +
-                  "; --debug-sample " + std::to_string(bad.x) + "," + std::to_string(bad.y) + "," +
-                  std::to_string(bad.sample) + " takes it again");
+                  ", seed " + std::to_string(context.seed) + "; --debug-sample " + std::to_string(bad.x) + "," +
+                  std::to_string(bad.y) + "," + std::to_string(bad.sample) + " takes it again");
     if (record.reuse.asked)
         logTo(log, LogLevel::Info,
               std::to_string(record.reuse.recordsReused) + " cache records were there already, " +
@@ -135,9 +134,11 @@ void writeResult(const RenderArguments& arguments, const Scene& scene, const Ren
 }
 
 /// Every camera in turn, with numbers in the names of all that is written.
-[[nodiscard]] bool runViews(const RenderArguments& arguments, const Scene& scene, const RenderRequest& request, const Workers& workers) {
+[[nodiscard]] bool runViews(const RenderArguments& arguments, const Scene& scene, const RenderRequest& request,
+                            const Workers& workers) {
     std::vector<std::string> cameras;
-    for (std::size_t i = 0; i < scene.description().cameras.size(); ++i) cameras.push_back(scene.description().cameras[i].name);
+    for (std::size_t i = 0; i < scene.description().cameras.size(); ++i)
+        cameras.push_back(scene.description().cameras[i].name);
     std::set<std::string> distinct(cameras.begin(), cameras.end());
     if (distinct.size() < cameras.size() || distinct.contains(""))
         for (std::size_t i = 0; i < cameras.size(); ++i) cameras[i] = std::to_string(i);
@@ -145,14 +146,17 @@ void writeResult(const RenderArguments& arguments, const Scene& scene, const Ren
     const LogSink log = terminal.log();
     bool interrupted = false;
     std::size_t frames = 0;
-    renderViews(scene, request, cameras, [&](std::size_t frame, const RenderResult& result) {
-        RenderArguments own = arguments;
-        for (std::string& file : own.outputs) file = numbered(file, frame);
-        if (!own.record.empty()) own.record = numbered(own.record, frame);
-        writeResult(own, scene, result, log);
-        interrupted = interrupted || result.interrupted;
-        ++frames;
-    }, workers, terminal.progress());
+    renderViews(
+        scene, request, cameras,
+        [&](std::size_t frame, const RenderResult& result) {
+            RenderArguments own = arguments;
+            for (std::string& file : own.outputs) file = numbered(file, frame);
+            if (!own.record.empty()) own.record = numbered(own.record, frame);
+            writeResult(own, scene, result, log);
+            interrupted = interrupted || result.interrupted;
+            ++frames;
+        },
+        workers, terminal.progress());
     return interrupted || frames < cameras.size();
 }
 
@@ -163,7 +167,8 @@ int runRender(const RenderArguments& arguments, Clock::time_point started) {
     const LogSink log = terminalLog(arguments.common.quiet);
     checkOutputs(arguments);
     const Workers workers(arguments.common.threads);
-    const auto scene = loadScene(arguments.common, true, workers, log, arguments.views == "all" ? std::string() : arguments.views);
+    const auto scene =
+        loadScene(arguments.common, true, workers, log, arguments.views == "all" ? std::string() : arguments.views);
     RenderRequest request = makeRequest(arguments.common);
     request.layers = arguments.layers;
     request.checkpoint = arguments.checkpoint;

@@ -15,7 +15,9 @@
 namespace pellucid {
 namespace {
 
-[[nodiscard]] std::string rgb(const Rgb& value) { return fmt::format("{:.6g} {:.6g} {:.6g}", value.r, value.g, value.b); }
+[[nodiscard]] std::string rgb(const Rgb& value) {
+    return fmt::format("{:.6g} {:.6g} {:.6g}", value.r, value.g, value.b);
+}
 
 [[nodiscard]] std::string lobesText(LobeKinds kinds) {
     std::string text;
@@ -31,20 +33,22 @@ namespace {
                            v.position.y, v.position.z, rgb(v.throughput));
     const glm::dvec3 metres = glm::dvec3(v.position) / n.scale() + n.centre;
     const std::string& material = scene.description().materials[v.material].name;
-    return fmt::format("{:3}  at {:.7g} {:.7g} {:.7g} m after {:.6g} m, normal {:.4f} {:.4f} {:.4f}{}\n"
-                       "     material {}{}, lobes {}, geometry {}, triangle {}\n"
-                       "     throughput {}, radiance so far {}\n",
-                       number, metres.x, metres.y, metres.z, static_cast<double>(v.distance) / n.scale(), v.normal.x,
-                       v.normal.y, v.normal.z, v.backSide ? ", from behind" : "", v.material,
-                       material.empty() ? "" : " '" + material + "'", lobesText(v.kinds), v.geometry, v.primitive,
-                       rgb(v.throughput), rgb(v.before.total()));
+    return fmt::format(
+        "{:3}  at {:.7g} {:.7g} {:.7g} m after {:.6g} m, normal {:.4f} {:.4f} {:.4f}{}\n"
+        "     material {}{}, lobes {}, geometry {}, triangle {}\n"
+        "     throughput {}, radiance so far {}\n",
+        number, metres.x, metres.y, metres.z, static_cast<double>(v.distance) / n.scale(), v.normal.x, v.normal.y,
+        v.normal.z, v.backSide ? ", from behind" : "", v.material, material.empty() ? "" : " '" + material + "'",
+        lobesText(v.kinds), v.geometry, v.primitive, rgb(v.throughput), rgb(v.before.total()));
 }
 
 [[nodiscard]] std::string replayText(const SampleReplay& replay, const Scene& scene) {
     std::string text;
     for (std::size_t i = 0; i < replay.vertices.size(); ++i) text += vertexText(replay.vertices[i], scene, i + 1);
-    if (!replay.lightVertices.empty()) text += "the light path beside it, its throughput in watts of the normalised scene:\n";
-    for (std::size_t i = 0; i < replay.lightVertices.size(); ++i) text += vertexText(replay.lightVertices[i], scene, i + 1);
+    if (!replay.lightVertices.empty())
+        text += "the light path beside it, its throughput in watts of the normalised scene:\n";
+    for (std::size_t i = 0; i < replay.lightVertices.size(); ++i)
+        text += vertexText(replay.lightVertices[i], scene, i + 1);
     constexpr std::array kNames{"emission", "direct", "caustic", "indirect"};
     for (std::size_t c = 0; c < kNames.size(); ++c)
         text += fmt::format("{:<9} {}\n", kNames[c], rgb(replay.radiance.layer[c]));

@@ -28,7 +28,8 @@ std::unique_ptr<Scene> loadScene(const SceneArguments& arguments, bool requireLi
     if (!arguments.tunedFor.empty() && arguments.tunedFor != scene->hash())
         logTo(log, LogLevel::Warning,
               arguments.config + " was tuned for another scene, environment or surface.cast_roughness (hash " +
-                  arguments.tunedFor + ", here " + scene->hash() + "): what it says of error and time need not hold here");
+                  arguments.tunedFor + ", here " + scene->hash() +
+                  "): what it says of error and time need not hold here");
     return scene;
 }
 

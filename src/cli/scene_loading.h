@@ -15,7 +15,8 @@ namespace pellucid {
 
 /// `viewsFile`: cameras in place of those of the scene; empty: the scene's own.
 [[nodiscard]] std::unique_ptr<Scene> loadScene(const SceneArguments& arguments, bool requireLight,
-                                               const Workers& workers, const LogSink& log, const std::string& viewsFile = {});
+                                               const Workers& workers, const LogSink& log,
+                                               const std::string& viewsFile = {});
 
 [[nodiscard]] RenderRequest makeRequest(const SceneArguments& arguments);
 

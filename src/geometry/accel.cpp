@@ -21,19 +21,21 @@ constexpr float kMaxCoordinate = 1.8e18F;
 [[nodiscard]] bool usable(const Ray& ray) noexcept {
     const glm::vec3& o = ray.origin;
     const glm::vec3& d = ray.direction;
-    const bool finite = std::fabs(o.x) < kMaxCoordinate && std::fabs(o.y) < kMaxCoordinate && std::fabs(o.z) < kMaxCoordinate &&
-                        std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z);
+    const bool finite = std::fabs(o.x) < kMaxCoordinate && std::fabs(o.y) < kMaxCoordinate &&
+                        std::fabs(o.z) < kMaxCoordinate && std::isfinite(d.x) && std::isfinite(d.y) &&
+                        std::isfinite(d.z);
     return finite && ray.tMax > 0.0F && (d.x != 0.0F || d.y != 0.0F || d.z != 0.0F);
 }
 
 [[nodiscard]] RTCGeometry makeTriangles(RTCDevice device, const Mesh& mesh, const glm::mat4& transform) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                     sizeof(glm::vec3), mesh.positions.size()));
-    auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                     sizeof(glm::uvec3), mesh.triangles.size()));
+    auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.positions.size()));
+    auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), mesh.triangles.size()));
     if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) vertices[i] = glm::vec3(transform * glm::vec4(mesh.positions[i], 1.0F));
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        vertices[i] = glm::vec3(transform * glm::vec4(mesh.positions[i], 1.0F));
     std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices);
     rtcCommitGeometry(geometry);
     return geometry;
@@ -86,11 +88,13 @@ struct Accel::Impl {
     }
 };
 
-Accel::Accel(std::span<const Mesh> meshes, std::span<const std::uint32_t> meshOfGeometry, std::span<const glm::mat4> toScene)
+Accel::Accel(std::span<const Mesh> meshes, std::span<const std::uint32_t> meshOfGeometry,
+             std::span<const glm::mat4> toScene)
     : impl_(std::make_unique<Impl>()) {
     impl_->device = rtcNewDevice("set_affinity=0");
     if (impl_->device == nullptr)
-        throw Error(ErrorKind::CannotFinish, "Embree could not be started", "acceleration structure", "check that libembree3 suits this machine");
+        throw Error(ErrorKind::CannotFinish, "Embree could not be started", "acceleration structure",
+                    "check that libembree3 suits this machine");
     impl_->scene = impl_->newScene();
     std::uint64_t triangles = 0;
     for (const std::uint32_t m : meshOfGeometry) triangles += meshes[m].triangles.size();
@@ -99,13 +103,15 @@ Accel::Accel(std::span<const Mesh> meshes, std::span<const std::uint32_t> meshOf
         impl_->addInstances(meshes, meshOfGeometry, toScene);
     } else {
         for (std::size_t g = 0; g < meshOfGeometry.size(); ++g)
-            impl_->attach(impl_->scene, makeTriangles(impl_->device, meshes[meshOfGeometry[g]], toScene[g]), static_cast<unsigned>(g));
+            impl_->attach(impl_->scene, makeTriangles(impl_->device, meshes[meshOfGeometry[g]], toScene[g]),
+                          static_cast<unsigned>(g));
     }
     rtcCommitScene(impl_->scene);
     const RTCError error = rtcGetDeviceError(impl_->device);
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != RTC_ERROR_NONE)
-        throw Error(ErrorKind::CannotFinish, "the acceleration structure could not be built (Embree error " + std::to_string(error) + ")",
+        throw Error(ErrorKind::CannotFinish,
+                    "the acceleration structure could not be built (Embree error " + std::to_string(error) + ")",
                     "scene geometry", "check the scene's coordinates and memory");
     RTCBounds b{};
     rtcGetSceneBounds(impl_->scene, &b);
@@ -120,8 +126,18 @@ bool Accel::intersect(const Ray& ray, RawHit& hit) const noexcept {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit rh;
-    rh.ray = {ray.origin.x, ray.origin.y, ray.origin.z, 0.0F, ray.direction.x, ray.direction.y, ray.direction.z, 0.0F,
-              ray.tMax, 0xffffffffU, 0, 0};
+    rh.ray = {ray.origin.x,
+              ray.origin.y,
+              ray.origin.z,
+              0.0F,
+              ray.direction.x,
+              ray.direction.y,
+              ray.direction.z,
+              0.0F,
+              ray.tMax,
+              0xffffffffU,
+              0,
+              0};
     rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     {
@@ -141,8 +157,18 @@ bool Accel::occluded(const Ray& ray) const noexcept {
     if (!usable(ray)) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay r{ray.origin.x, ray.origin.y, ray.origin.z, 0.0F, ray.direction.x, ray.direction.y, ray.direction.z, 0.0F,
-             ray.tMax, 0xffffffffU, 0, 0};
+    RTCRay r{ray.origin.x,
+             ray.origin.y,
+             ray.origin.z,
+             0.0F,
+             ray.direction.x,
+             ray.direction.y,
+             ray.direction.z,
+             0.0F,
+             ray.tMax,
+             0xffffffffU,
+             0,
+             0};
     {
         const TrapsMasked masked;
         rtcOccluded1(impl_->scene, &context, &r);

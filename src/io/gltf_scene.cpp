@@ -85,8 +85,8 @@ private:
     [[nodiscard]] std::optional<std::uint32_t> meshOf(const MeshKey& key) {
         if (const auto known = meshes_.find(key); known != meshes_.end()) return known->second;
         std::optional<std::uint32_t>& number = meshes_[key];
-        if (auto mesh = buildMesh(asset_, {key.mesh, key.primitive}, deformationOf(key),
-                                         description_.droppedTriangles)) {
+        if (auto mesh =
+                buildMesh(asset_, {key.mesh, key.primitive}, deformationOf(key), description_.droppedTriangles)) {
             number = add(std::move(*mesh));
         }
         checkLimit();

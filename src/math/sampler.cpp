@@ -57,16 +57,19 @@ constexpr std::array<std::uint32_t, kPrimes> kPrime = firstPrimes();
 glm::vec2 Sampler::other2D() noexcept {
     const std::uint64_t dimension = ++dimension_, seed = hash64(key_ + 0x9e3779b97f4a7c15ULL * dimension);
     if (kind_ == SamplerKind::Halton && 2 * dimension + 1 < kPrimes)
-        return {scrambledRadicalInverse(index_, kPrime[2 * dimension], seed), scrambledRadicalInverse(index_, kPrime[2 * dimension + 1], seed ^ 1U)};
+        return {scrambledRadicalInverse(index_, kPrime[2 * dimension], seed),
+                scrambledRadicalInverse(index_, kPrime[2 * dimension + 1], seed ^ 1U)};
     const std::uint64_t first = hashCombine(seed, index_), second = hash64(first);
     if (kind_ != SamplerKind::Stratified) return {unit(first), unit(second)};
     const std::uint32_t cell = permuted(index_ % kStrata, hashCombine(~seed, index_ / kStrata));
-    return {below1((cell % kSide + static_cast<double>(unit(first))) / kSide), below1((cell / kSide + static_cast<double>(unit(second))) / kSide)};
+    return {below1((cell % kSide + static_cast<double>(unit(first))) / kSide),
+            below1((cell / kSide + static_cast<double>(unit(second))) / kSide)};
 }
 
 float Sampler::other1D() noexcept {
     const std::uint64_t dimension = ++dimension_, seed = hash64(key_ + 0x9e3779b97f4a7c15ULL * dimension);
-    if (kind_ == SamplerKind::Halton && 2 * dimension < kPrimes) return scrambledRadicalInverse(index_, kPrime[2 * dimension], seed);
+    if (kind_ == SamplerKind::Halton && 2 * dimension < kPrimes)
+        return scrambledRadicalInverse(index_, kPrime[2 * dimension], seed);
     const std::uint64_t number = hashCombine(seed, index_);
     if (kind_ != SamplerKind::Stratified) return unit(number);
     const std::uint32_t cell = permuted(index_ % kStrata, hashCombine(~seed, index_ / kStrata));

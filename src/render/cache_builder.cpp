@@ -26,14 +26,16 @@ constexpr float kCoarser = 3.0F;
         const bool coarser = stride < kCoarsestStride && x % (2 * stride) == 0 && y % (2 * stride) == 0;
         if (!coarser) pixels.push_back(i);
     }
-    std::sort(pixels.begin(), pixels.end(), [seed](std::uint32_t a, std::uint32_t b) { return hashCombine(seed, a) < hashCombine(seed, b); });
+    std::sort(pixels.begin(), pixels.end(),
+              [seed](std::uint32_t a, std::uint32_t b) { return hashCombine(seed, a) < hashCombine(seed, b); });
     return pixels;
 }
 
 }  // namespace
 
-CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, const GenerationSize& size, std::uint64_t seed,
-                      const Workers& workers, const std::function<bool()>& stop, std::unique_ptr<IrradianceCache> known) {
+CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan,
+                      const GenerationSize& size, std::uint64_t seed, const Workers& workers,
+                      const std::function<bool()>& stop, std::unique_ptr<IrradianceCache> known) {
     CacheBuild build;
     const float error = size.cacheError, read = error * kReadSlack;
     build.cache = known ? std::move(known) : std::make_unique<IrradianceCache>(context.scene.bounds(), read);
@@ -59,7 +61,8 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
             workers.forEach(misses.size(), 1, [&](std::size_t i) {
                 const GatherPoint& p = seen.points[misses[i]];
                 Walk walk(context);
-                const GatherOptions options{size.gatherRays, plan.minSpacing * p.footprint / error, plan.maxSpacing * p.footprint / error, seed};
+                const GatherOptions options{size.gatherRays, plan.minSpacing * p.footprint / error,
+                                            plan.maxSpacing * p.footprint / error, seed};
                 records[i] = gatherRecord(walk, p, options, misses[i]);
                 rays[i] = walk.rays();
             });

@@ -17,8 +17,9 @@ struct CacheBuild {
 };
 
 /// `known`: records to start from, none where empty. `size` gives Ward's a of this generation; look-ups while rendering use a little more, so that few points miss.
-[[nodiscard]] CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan, const GenerationSize& size,
-                                    std::uint64_t seed, const Workers& workers, const std::function<bool()>& stop,
+[[nodiscard]] CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan,
+                                    const GenerationSize& size, std::uint64_t seed, const Workers& workers,
+                                    const std::function<bool()>& stop,
                                     std::unique_ptr<IrradianceCache> known = nullptr);
 
 }  // namespace pellucid

@@ -15,9 +15,9 @@ namespace {
 constexpr SealedKind kCacheFile{"pellucid cache 1\n", "the cache file", "delete it, or name another: it is made anew"};
 
 /// What a view may have for itself.
-constexpr std::array<std::string_view, 12> kOfTheView{"photon.caustic", "photon.radius",   "photon.alpha",    "photon.guiding",  "path.adaptive",
-                                                      "path.sampler",   "reference.texel", "camera.aperture", "camera.focus", "cache.mode",
-                                                      "photon.chance",  "photon.caustic_map"};
+constexpr std::array<std::string_view, 12> kOfTheView{
+    "photon.caustic",  "photon.radius",   "photon.alpha", "photon.guiding", "path.adaptive", "path.sampler",
+    "reference.texel", "camera.aperture", "camera.focus", "cache.mode",     "photon.chance", "photon.caustic_map"};
 
 static_assert(std::is_trivially_copyable_v<IrradianceRecord> && sizeof(IrradianceRecord) == 32 * sizeof(float));
 
@@ -28,14 +28,16 @@ static_assert(std::is_trivially_copyable_v<IrradianceRecord> && sizeof(Irradianc
     if (!std::all_of(numbers.begin(), numbers.end(), [](float f) { return std::isfinite(f); })) return false;
     // In the tree a record takes cells by its reach: far outside or with a huge one it would take them all.
     const float size = std::max(1e-6F, scene.radius());
-    return record.radius > 0.0F && std::isfinite(reach) && reach > 0.0F && glm::length(record.position - scene.centre()) <= 4.0F * size;
+    return record.radius > 0.0F && std::isfinite(reach) && reach > 0.0F &&
+           glm::length(record.position - scene.centre()) <= 4.0F * size;
 }
 
 /// Why a file does not fit, in words; empty: it does.
 [[nodiscard]] std::string difference(const CacheKey& here, const CacheKey& there) {
     std::string text;
     for (const auto& [name, value] : here.parts) {
-        const auto other = std::find_if(there.parts.begin(), there.parts.end(), [&](const auto& part) { return part.first == name; });
+        const auto other =
+            std::find_if(there.parts.begin(), there.parts.end(), [&](const auto& part) { return part.first == name; });
         if (other != there.parts.end() && other->second == value) continue;
         if (!text.empty()) text += ", ";
         if (name == "scene") return "scene, environment or surface.cast_roughness";
@@ -63,7 +65,8 @@ CacheKey cacheKey(const Scene& scene, const Settings& resolved, bool causticsApa
     key.parts.emplace_back("scene", scene.hash());
     key.parts.emplace_back("caustics", causticsApart ? "apart from the records" : "in the records");
     for (const auto& [name, value] : settingsAsText(resolved))
-        if (std::find(kOfTheView.begin(), kOfTheView.end(), name) == kOfTheView.end()) key.parts.emplace_back(name, value);
+        if (std::find(kOfTheView.begin(), kOfTheView.end(), name) == kOfTheView.end())
+            key.parts.emplace_back(name, value);
     return key;
 }
 
@@ -89,7 +92,8 @@ std::string cacheBody(const CacheKey& key, const LearntLight& light) {
     return body.bytes();
 }
 
-LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& file, const CacheKey* key, const Bounds& scene) {
+LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& file, const CacheKey* key,
+                           const Bounds& scene) {
     ByteReader reader(body);
     const CacheKey there = getKey(reader);
     if (!reader.good()) refuseDamaged(file, kCacheFile);
@@ -109,8 +113,10 @@ LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& f
     const auto records = reader.getBlock<std::vector<IrradianceRecord>>();
     const auto reaches = reader.getBlock<std::vector<float>>();
     const auto map = reader.getBlock<std::vector<char>>();
-    const bool sizes = light.size.gatherRays > 0 && light.size.cacheError > 0.0F && error >= light.size.cacheError && error < 100.0F && light.rays >= 0.0;
-    if (!reader.good() || reader.left() > 0 || !sizes || records.size() != reaches.size()) refuseDamaged(file, kCacheFile);
+    const bool sizes = light.size.gatherRays > 0 && light.size.cacheError > 0.0F && error >= light.size.cacheError &&
+                       error < 100.0F && light.rays >= 0.0;
+    if (!reader.good() || reader.left() > 0 || !sizes || records.size() != reaches.size())
+        refuseDamaged(file, kCacheFile);
     auto cache = std::make_shared<IrradianceCache>(scene, error);
     for (std::size_t i = 0; i < records.size(); ++i) {
         if (!isSound(records[i], reaches[i], scene)) refuseDamaged(file, kCacheFile);

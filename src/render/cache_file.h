@@ -26,10 +26,12 @@ struct CacheKey {
 void writeCacheFile(const std::filesystem::path& file, const CacheKey& key, const LearntLight& light);
 
 /// Empty when there is no such file; throws Error{BadInput} when it is damaged or was made from something else.
-[[nodiscard]] std::optional<LearntLight> readCacheFile(const std::filesystem::path& file, const CacheKey& key, const Bounds& scene);
+[[nodiscard]] std::optional<LearntLight> readCacheFile(const std::filesystem::path& file, const CacheKey& key,
+                                                       const Bounds& scene);
 
 /// The sealed part of such a file, and back. `key` null: whoever made it. `file` is for errors.
-[[nodiscard]] LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& file, const CacheKey* key, const Bounds& scene);
+[[nodiscard]] LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& file, const CacheKey* key,
+                                         const Bounds& scene);
 [[nodiscard]] std::string cacheBody(const CacheKey& key, const LearntLight& light);
 
 }  // namespace pellucid

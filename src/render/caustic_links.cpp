@@ -20,7 +20,8 @@ constexpr std::size_t kMostTriangles = 4096;
 
 class Reasons {
 public:
-    Reasons(const Scene& scene, const CasterTally& tally, std::size_t receivers) : scene_(scene), tally_(tally), receivers_(receivers) {}
+    Reasons(const Scene& scene, const CasterTally& tally, std::size_t receivers)
+        : scene_(scene), tally_(tally), receivers_(receivers) {}
 
     [[nodiscard]] std::string of(std::size_t lamp, std::size_t caster) {
         const TalliedCaster& c = tally_.casters()[caster];
@@ -28,15 +29,21 @@ public:
         const std::uint64_t emitted = tally_.emitted(lamp);
         if (f.useful > 0) return "";
         if (!c.smooth)
-            return fmt::format("too rough to cast: {:.3g} is above surface.cast_roughness {:.3g}; path traced", c.roughness, scene_.surfaces().rules().castRoughness);
+            return fmt::format("too rough to cast: {:.3g} is above surface.cast_roughness {:.3g}; path traced",
+                               c.roughness, scene_.surfaces().rules().castRoughness);
         if (receivers_ == 0) return "no receiver: the camera sees no diffuse surface";
         if (f.hit == 0 && behind(tally_.lamps()[lamp], caster)) return "behind the lamp: it shines the other way";
         if (f.hit == 0 && outsideCone(tally_.lamps()[lamp], caster)) return "outside of the spot's cone";
         if (emitted == 0) return "no pilot path began at this lamp";
         if (f.hit == 0)
-            return fmt::format("not met: {:.3g} % of the lamp's paths leave the scene, the rest meet other surfaces first", percent(tally_.missed(lamp), emitted));
+            return fmt::format(
+                "not met: {:.3g} % of the lamp's paths leave the scene, the rest meet other surfaces first",
+                percent(tally_.missed(lamp), emitted));
         if (f.deposited == 0)
-            return fmt::format("no receiver behind it: {:.3g} % leave the scene, the rest end in it or at surfaces that are not diffuse", percent(f.escaped, f.hit));
+            return fmt::format(
+                "no receiver behind it: {:.3g} % leave the scene, the rest end in it or at surfaces that are not "
+                "diffuse",
+                percent(f.escaped, f.hit));
         return "no receiver in view: its photons land where the camera does not look";
     }
 
@@ -70,9 +77,13 @@ private:
                 ++found;
                 const glm::vec3 from = scene_.corners(g, p)[0];
                 for (int i = 0; i < 8; ++i) {
-                    const glm::vec3 to((i & 1) != 0 ? box.upper.x : box.lower.x, (i & 2) != 0 ? box.upper.y : box.lower.y, (i & 4) != 0 ? box.upper.z : box.lower.z);
+                    const glm::vec3 to((i & 1) != 0 ? box.upper.x : box.lower.x,
+                                       (i & 2) != 0 ? box.upper.y : box.lower.y,
+                                       (i & 4) != 0 ? box.upper.z : box.lower.z);
                     const glm::vec3 along = to - from;
-                    if (!(glm::dot(along, along) > 0.0F) || scene_.lights().pdfEmission(light, glm::normalize(along)).direction > 0.0F) return false;
+                    if (!(glm::dot(along, along) > 0.0F) ||
+                        scene_.lights().pdfEmission(light, glm::normalize(along)).direction > 0.0F)
+                        return false;
                 }
             }
         }
@@ -108,7 +119,9 @@ std::vector<CausticLink> causticLinks(const Scene& scene, const CasterTally& tal
     for (std::size_t l = 0; l < tally.lamps().size(); ++l)
         for (std::size_t c = 0; c < tally.casters().size(); ++c) {
             const CasterFate f = tally.fate(l, c);
-            ranked.push_back({{tally.lamps()[l].name, tally.casters()[c].name, tally.emitted(l), f.hit, f.deposited, f.useful, reasons.of(l, c)}, tally.lamps()[l].power});
+            ranked.push_back({{tally.lamps()[l].name, tally.casters()[c].name, tally.emitted(l), f.hit, f.deposited,
+                               f.useful, reasons.of(l, c)},
+                              tally.lamps()[l].power});
         }
     std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
         if (a.link.useful != b.link.useful) return a.link.useful > b.link.useful;

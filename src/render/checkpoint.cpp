@@ -33,8 +33,9 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     if (!body) return std::nullopt;
     ByteReader reader(*body);
     if (reader.getBlock<std::string>() != key.text)
-        throw Error(ErrorKind::BadInput, "the checkpoint belongs to another render (scene, camera, size, seed, method or settings differ)", file.string(),
-                    "give the same arguments as before, or delete it");
+        throw Error(ErrorKind::BadInput,
+                    "the checkpoint belongs to another render (scene, camera, size, seed, method or settings differ)",
+                    file.string(), "give the same arguments as before, or delete it");
     CheckpointState state;
     state.iteration = reader.get<std::uint32_t>();
     state.generation = reader.get<std::uint32_t>();
@@ -43,7 +44,8 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     state.causticPaths = reader.get<std::uint32_t>();
     state.causticRays = reader.get<std::uint64_t>();
     state.causticEmitted = reader.get<std::uint64_t>();
-    for (std::vector<char>* block : {&state.film, &state.training, &state.radii}) *block = reader.getBlock<std::vector<char>>();
+    for (std::vector<char>* block : {&state.film, &state.training, &state.radii})
+        *block = reader.getBlock<std::vector<char>>();
     if (!reader.good()) refuseDamaged(file, kCheckpoint);
     return state;
 }

@@ -18,8 +18,8 @@ struct CheckpointState {
     std::uint32_t iteration = 0, generation = 0;
     double raysOfGeneration = 0.0, raysSince = 0.0;
     std::vector<char> film;
-    std::vector<char> training, radii;  ///< what guide and kernel radii have learnt
-    std::uint32_t causticPaths = 0;     ///< of an iteration to come
+    std::vector<char> training, radii;                  ///< what guide and kernel radii have learnt
+    std::uint32_t causticPaths = 0;                     ///< of an iteration to come
     std::uint64_t causticRays = 0, causticEmitted = 0;  ///< of all caustic passes so far
 };
 
@@ -29,6 +29,7 @@ struct CheckpointState {
 void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key, const CheckpointState& state);
 
 /// Empty when there is no such file; throws Error{BadInput} when it is damaged or belongs to another render.
-[[nodiscard]] std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file, const CheckpointKey& key);
+[[nodiscard]] std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
+                                                            const CheckpointKey& key);
 
 }  // namespace pellucid

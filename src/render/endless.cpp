@@ -21,7 +21,8 @@ constexpr float kEverything = 0.99995F;
 [[nodiscard]] bool goesOn(const Scene& scene, const Camera& camera, std::uint32_t index) {
     Sampler sampler(0x656e646cULL, index, 0);
     const glm::vec2 place = sampler.next2D(), lens = sampler.next2D();
-    const CameraRay start = camera.ray(place * glm::vec2(static_cast<float>(camera.width()), static_cast<float>(camera.height())), lens);
+    const CameraRay start =
+        camera.ray(place * glm::vec2(static_cast<float>(camera.width()), static_cast<float>(camera.height())), lens);
     Ray ray = start.ray;
     float kept = 1.0F;
     for (int bounce = 0; bounce < kBounces; ++bounce) {
@@ -30,7 +31,8 @@ constexpr float kEverything = 0.99995F;
         if (!hit) return false;
         const glm::vec3 wo = -ray.direction;
         const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wo);
-        if (bsdf.bordersVolume() && !isBlack(scene.surfaces().materials()[hit->point.material].absorption)) return false;
+        if (bsdf.bordersVolume() && !isBlack(scene.surfaces().materials()[hit->point.material].absorption))
+            return false;
         const float choice = sampler.next1D();
         const auto sample = bsdf.sample(wo, choice, sampler.next2D(), kAllLobes, TransportMode::Flux);
         if (!sample) return false;
@@ -49,7 +51,8 @@ std::optional<std::string> endlessRemark(const Scene& scene, const Camera& camer
     if (std::ranges::none_of(scene.description().materials, reflectsEverything)) return std::nullopt;
     for (std::uint32_t i = 0; i < kPaths; ++i)
         if (!goesOn(scene, camera, i)) return std::nullopt;
-    return "endless light: the room is closed and absorbs nothing, so there is no steady state; paths are ended by chance and "
+    return "endless light: the room is closed and absorbs nothing, so there is no steady state; paths are ended by "
+           "chance and "
            "the picture is no answer (lower a base colour below 1)";
 }
 

@@ -17,7 +17,8 @@ constexpr const char* kLayerNames[kPathClasses] = {"emission", "direct", "causti
 }  // namespace
 
 const std::vector<std::string>& auxiliaryLayers() noexcept {
-    static const std::vector<std::string> names{"albedo", "normal", "depth", "variance", "radius", "photons", "records", "samples", "classes"};
+    static const std::vector<std::string> names{"albedo",  "normal",  "depth",   "variance", "radius",
+                                                "photons", "records", "samples", "classes"};
     return names;
 }
 
@@ -31,8 +32,8 @@ bool Film::admit(std::size_t pixel, std::uint32_t iteration, const LayeredRadian
     return false;
 }
 
-void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance, const FirstHit& first, int samples,
-               std::uint64_t rays) noexcept {
+void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance, const FirstHit& first,
+               int samples, std::uint64_t rays) noexcept {
     if (!admit(pixel, iteration, radiance)) return;
     Pixel& p = pixels_[pixel];
     const Rgb total = radiance.total();
@@ -81,10 +82,12 @@ PixelNoise Film::noise(std::size_t pixel) const noexcept {
     const double n = samples_, free = std::max(1.0, n - 1.0), taken = std::max<std::uint32_t>(1, p.taken);
     PixelNoise noise;
     noise.eyeVariance = static_cast<float>(std::max(0.0, p.eyeSquare - p.eyeSum * p.eyeSum / taken) / free);
-    noise.photonVariance = static_cast<float>(std::max(0.0, p.sharedSquare - p.sharedSum * p.sharedSum / std::max(1.0, n)) / free);
+    noise.photonVariance =
+        static_cast<float>(std::max(0.0, p.sharedSquare - p.sharedSum * p.sharedSum / std::max(1.0, n)) / free);
     noise.luminance = static_cast<float>(p.eyeSum / taken + p.sharedSum / std::max(1.0, n));
     noise.rays = static_cast<float>(static_cast<double>(p.rays) / taken);
-    const double odd = std::max<std::uint32_t>(1, samples_ / 2), even = std::max<std::uint32_t>(1, samples_ - samples_ / 2);
+    const double odd = std::max<std::uint32_t>(1, samples_ / 2),
+                 even = std::max<std::uint32_t>(1, samples_ - samples_ / 2);
     noise.blur2 = static_cast<float>(p.blurHalf / odd * ((p.blur - p.blurHalf) / even));
     noise.inside = p.taken > 0;
     return noise;
@@ -92,14 +95,16 @@ PixelNoise Film::noise(std::size_t pixel) const noexcept {
 
 void Film::keepStrings(LobeKinds kinds) {
     stringSlots_ = possibleStrings(kinds);
-    for (std::size_t i = 0; i < stringSlots_.size(); ++i) slotOf_[stringSlots_[i].code()] = static_cast<std::int16_t>(i);
+    for (std::size_t i = 0; i < stringSlots_.size(); ++i)
+        slotOf_[stringSlots_[i].code()] = static_cast<std::int16_t>(i);
     strings_.assign(stringSlots_.size() * pixels_.size() * 3, 0.0);
     splatStrings_ = strings_;
 }
 
 double Film::stringMean(std::size_t slot, std::size_t pixel, std::size_t channel) const noexcept {
     const std::size_t i = (slot * pixels_.size() + pixel) * 3 + channel;
-    return strings_[i] / std::max<std::uint32_t>(1, samples_) + splatStrings_[i] / std::max<std::uint32_t>(1, splatPasses_);
+    return strings_[i] / std::max<std::uint32_t>(1, samples_) +
+           splatStrings_[i] / std::max<std::uint32_t>(1, splatPasses_);
 }
 
 std::vector<std::pair<std::size_t, std::string>> Film::litStrings() const {
@@ -108,7 +113,8 @@ std::vector<std::pair<std::size_t, std::string>> Film::litStrings() const {
     const auto isLit = [](double v) { return v != 0.0; };
     for (std::size_t s = 0; s < stringSlots_.size(); ++s) {
         const auto at = static_cast<std::ptrdiff_t>(s * plane), end = static_cast<std::ptrdiff_t>((s + 1) * plane);
-        if (std::any_of(strings_.begin() + at, strings_.begin() + end, isLit) || std::any_of(splatStrings_.begin() + at, splatStrings_.begin() + end, isLit))
+        if (std::any_of(strings_.begin() + at, strings_.begin() + end, isLit) ||
+            std::any_of(splatStrings_.begin() + at, splatStrings_.begin() + end, isLit))
             lit.emplace_back(s, "class." + stringSlots_[s].name());
     }
     return lit;
@@ -123,7 +129,10 @@ void Film::addSplats(const std::vector<LightSplat>& splats, std::uint32_t pass) 
             continue;
         }
         p.splatPass += luminance(s.radiance);
-        double* string = stringSlots_.empty() ? nullptr : &splatStrings_[(static_cast<std::size_t>(slotOf_[s.path.code()]) * pixels_.size() + s.pixel) * 3];
+        double* string =
+            stringSlots_.empty()
+                ? nullptr
+                : &splatStrings_[(static_cast<std::size_t>(slotOf_[s.path.code()]) * pixels_.size() + s.pixel) * 3];
         for (glm::length_t c = 0; c < 3; ++c) {
             const auto value = static_cast<double>(s.radiance[c]);
             p.splat[static_cast<std::size_t>(s.path.layer())][c] += value;
@@ -156,7 +165,8 @@ double Film::luminanceOf(const Pixel& p) const noexcept {
 }
 
 double Film::luminanceAt(int x, int y) const noexcept {
-    return luminanceOf(pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]);
+    return luminanceOf(
+        pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]);
 }
 
 double Film::meanLuminance() const noexcept {
@@ -179,13 +189,14 @@ double Film::indirectShare() const noexcept {
 /// Of the pixel's mean luminance: sample variance over the number of samples, of the eye's samples and of the passes'
 /// splats, which are taken as independent of each other.
 double Film::variance(const Pixel& p) const noexcept {
-    const auto ofMean = [](const double (&layers)[kPathClasses][3], double square, double count) {
+    const auto ofMean = [](const double(&layers)[kPathClasses][3], double square, double count) {
         double sum = 0.0;
         for (const auto& l : layers) sum += 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2];
         const double m = sum / count;
         return std::max(0.0, square / count - m * m) / std::max(1.0, count - 1.0);
     };
-    return ofMean(p.layer, p.square, std::max<std::uint32_t>(1, samples_)) + ofMean(p.splat, p.splatSquare, std::max<std::uint32_t>(1, splatPasses_));
+    return ofMean(p.layer, p.square, std::max<std::uint32_t>(1, samples_)) +
+           ofMean(p.splat, p.splatSquare, std::max<std::uint32_t>(1, splatPasses_));
 }
 
 Image Film::image(const std::vector<std::string>& layers) const {
@@ -195,8 +206,8 @@ Image Film::image(const std::vector<std::string>& layers) const {
     };
     for (const char* l : kLayerNames) addRgb(l);
     const bool albedo = wants(layers, "albedo"), normal = wants(layers, "normal"), depth = wants(layers, "depth"),
-               withVariance = wants(layers, "variance"), radius = wants(layers, "radius"), photons = wants(layers, "photons"),
-               samples = wants(layers, "samples");
+               withVariance = wants(layers, "variance"), radius = wants(layers, "radius"),
+               photons = wants(layers, "photons"), samples = wants(layers, "samples");
     if (albedo) addRgb("albedo");
     if (normal) names.insert(names.end(), {"normal.X", "normal.Y", "normal.Z"});
     if (depth) names.emplace_back("depth.Z");
@@ -305,7 +316,8 @@ std::vector<char> Film::save() const {
 }
 
 std::size_t Film::savedSize() const noexcept {
-    return sizeof samples_ + sizeof splatPasses_ + pixels_.size() * sizeof(Pixel) + (strings_.size() + splatStrings_.size()) * sizeof(double);
+    return sizeof samples_ + sizeof splatPasses_ + pixels_.size() * sizeof(Pixel) +
+           (strings_.size() + splatStrings_.size()) * sizeof(double);
 }
 
 bool Film::restore(const std::vector<char>& bytes) {

@@ -50,7 +50,8 @@ GlobalPass learnMap(const TransportContext& context, const Survey& seen, LearntL
             if (missing[i] != 0) kept.push_back(places[i]);
         places = std::move(kept);
     }
-    GlobalPass pass = traceGlobalPhotons(context.scene, {light.seed, kGlobalPass + light.generation, light.size.globalPaths}, workers);
+    GlobalPass pass = traceGlobalPhotons(context.scene,
+                                         {light.seed, kGlobalPass + light.generation, light.size.globalPaths}, workers);
     auto map = std::make_shared<RadianceMap>(context.scene, pass.photons, places, options, workers, light.map.get());
     pass.rays += map->rays();
     light.map = std::move(map);

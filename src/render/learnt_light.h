@@ -16,12 +16,12 @@
 namespace pellucid {
 
 struct LearntLight {
-    std::uint64_t seed = 0;              ///< of photons, places and gather rays
+    std::uint64_t seed = 0;  ///< of photons, places and gather rays
     std::uint32_t generation = 0;
-    std::uint32_t views = 0;             ///< that have added to it
+    std::uint32_t views = 0;  ///< that have added to it
     GenerationSize size;
-    double rays = 0.0;                   ///< that it took
-    std::vector<std::uint64_t> seen;     ///< hashes of the surveys that it is complete for
+    double rays = 0.0;                             ///< that it took
+    std::vector<std::uint64_t> seen;               ///< hashes of the surveys that it is complete for
     std::shared_ptr<const RadianceMap> map;        ///< null: there is none
     std::shared_ptr<const IrradianceCache> cache;  ///< null: nothing is learnt yet
 
@@ -39,6 +39,7 @@ struct LearntCounts {
 
 /// Gives `light` a map for what is seen: a new one, or more places of the one that it has, where gather rays from here would
 /// land and hardly find any. Returns the photon pass, with the rays of all; empty when the map that is there serves.
-[[nodiscard]] GlobalPass learnMap(const TransportContext& context, const Survey& seen, LearntLight& light, const Workers& workers);
+[[nodiscard]] GlobalPass learnMap(const TransportContext& context, const Survey& seen, LearntLight& light,
+                                  const Workers& workers);
 
 }  // namespace pellucid

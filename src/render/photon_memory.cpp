@@ -22,15 +22,18 @@ constexpr std::uint64_t kTrialPass = 0x6d656d6f7279ULL;
 /// The trial's photons a path are a sample; so much more is allowed for.
 constexpr double kMargin = 1.1;
 
-[[nodiscard]] FittedPaths fit(std::uint32_t wanted, double share, const RenderRequest& request, double bytesPerPhoton, double photonsPerPath) {
+[[nodiscard]] FittedPaths fit(std::uint32_t wanted, double share, const RenderRequest& request, double bytesPerPhoton,
+                              double photonsPerPath) {
     const double megabytes = share * request.settings.photonMemory;
     const double bytesPerPath = bytesPerPhoton * std::max(photonsPerPath, 1e-3);
     FittedPaths fitted;
     fitted.most = static_cast<std::uint32_t>(std::clamp(megabytes * 1e6 / bytesPerPath, 1.0, 4e9));
     fitted.paths = std::min(wanted, fitted.most);
     if (fitted.paths < wanted)
-        fitted.remark = fmt::format("photon.memory: {} paths wanted, {} fit in {:.4g} MB at up to {:.3g} photons a path and {:.0f} bytes a photon", wanted,
-                                    fitted.paths, megabytes, photonsPerPath, bytesPerPhoton);
+        fitted.remark = fmt::format(
+            "photon.memory: {} paths wanted, {} fit in {:.4g} MB at up to {:.3g} photons a path and {:.0f} bytes a "
+            "photon",
+            wanted, fitted.paths, megabytes, photonsPerPath, bytesPerPhoton);
     return fitted;
 }
 
@@ -42,20 +45,23 @@ constexpr double kMargin = 1.1;
 
 }  // namespace
 
-FittedPaths fitCausticPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
-                            const Workers& workers) {
+FittedPaths fitCausticPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene, const RenderRequest& request,
+                            const Survey& seen, const Workers& workers) {
     if (!limited(request)) return {wanted, 0, {}};
     const EmissionGuide guide(scene.lights(), plan.training);
-    const CausticPass trial = traceCausticPhotons(scene, guide, {request.seed, kTrialPass, kTrialPaths}, &seen.visible, workers);
+    const CausticPass trial =
+        traceCausticPhotons(scene, guide, {request.seed, kTrialPass, kTrialPaths}, &seen.visible, workers);
     // As if every path were useful: guiding gets better.
     const double photons = std::max(1.0, perPath(trial.photons.size(), trial.useful.size()));
     return fit(wanted, 1.0, request, kCausticBytes, photons);
 }
 
-FittedPaths fitGlobalPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene, const RenderRequest& request, const Workers& workers) {
+FittedPaths fitGlobalPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene, const RenderRequest& request,
+                           const Workers& workers) {
     if (!limited(request)) return {wanted, 0, {}};
     const GlobalPass trial = traceGlobalPhotons(scene, {request.seed, kTrialPass + 1, kTrialPaths}, workers);
-    return fit(wanted, plan.causticMap ? kGlobalShare : 1.0, request, kGlobalBytes, perPath(trial.photons.size(), kTrialPaths));
+    return fit(wanted, plan.causticMap ? kGlobalShare : 1.0, request, kGlobalBytes,
+               perPath(trial.photons.size(), kTrialPaths));
 }
 
 }  // namespace pellucid

@@ -10,13 +10,13 @@ namespace pellucid {
 
 /// Paths that were wanted, made fewer where they would not fit, and a remark for the plan (empty: all fit).
 struct FittedPaths {
-    std::uint32_t paths = 0, most = 0;   ///< most: that would fit; 0: no limit
+    std::uint32_t paths = 0, most = 0;  ///< most: that would fit; 0: no limit
     std::string remark;
 };
 
-[[nodiscard]] FittedPaths fitCausticPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene, const RenderRequest& request,
-                                          const Survey& seen, const Workers& workers);
-[[nodiscard]] FittedPaths fitGlobalPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene, const RenderRequest& request,
-                                         const Workers& workers);
+[[nodiscard]] FittedPaths fitCausticPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene,
+                                          const RenderRequest& request, const Survey& seen, const Workers& workers);
+[[nodiscard]] FittedPaths fitGlobalPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene,
+                                         const RenderRequest& request, const Workers& workers);
 
 }  // namespace pellucid

@@ -36,15 +36,16 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
 }
 
 /// Trains emission guiding; returns how many pilot photons were useful.
-[[nodiscard]] std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
-                                        const Workers& workers) {
+[[nodiscard]] std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request,
+                                        const Survey& seen, const Workers& workers) {
     std::vector<UsefulEmission> useful;
     std::uint32_t paths = kPilotPaths;
     double unguided = 0.0;
     CasterTally tally(scene);
     for (std::uint64_t attempt = 0; attempt < kPilotRounds; ++attempt) {
         const EmissionGuide guide(scene.lights(), useful);
-        CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible, workers, &tally);
+        CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible,
+                                               workers, &tally);
         plan.pilotRays += pass.rays;
         plan.pilotPhotons += pass.emitted;
         // Each guided look replaces the one before: its sample is the better one. Enough when it hardly finds more.
@@ -53,26 +54,34 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
         plan.usefulShare = now / paths;
         if (!(unguided > 0.0)) unguided = plan.usefulShare;
         if (now == 0.0 && attempt > 0) break;
-        if (now == 0.0) paths = kPilotPaths * kPilotRetryFactor;
-        else if (now >= kEnoughUseful && now < 1.3 * before) break;
+        if (now == 0.0)
+            paths = kPilotPaths * kPilotRetryFactor;
+        else if (now >= kEnoughUseful && now < 1.3 * before)
+            break;
     }
     plan.training = std::move(useful);
-    plan.guideGain = unguided > 0.0 && !isOff(request.settings.guiding) ? std::max(1.0, plan.usefulShare / unguided) : 1.0;
+    plan.guideGain =
+        unguided > 0.0 && !isOff(request.settings.guiding) ? std::max(1.0, plan.usefulShare / unguided) : 1.0;
     plan.causticLinks = causticLinks(scene, tally, seen.receivers);
     return plan.training.size();
 }
 
-void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen, const Workers& workers) {
+void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                  const Workers& workers) {
     const Settings& s = request.settings;
     const LobeKinds kinds = scene.lobeKinds();
     if (isOff(s.causticMap)) return decide(plan, "caustic map", "off", "asked for; its class is path traced", true);
-    if ((kinds & kSpecular) == kNoLobe) return decide(plan, "caustic map", "off", fmt::format("no material casts caustics: roughness above {} and no glass", s.castRoughness));
+    if ((kinds & kSpecular) == kNoLobe)
+        return decide(plan, "caustic map", "off",
+                      fmt::format("no material casts caustics: roughness above {} and no glass", s.castRoughness));
     if (seen.receivers == 0) return decide(plan, "caustic map", "off", "the camera sees no diffuse surface");
     const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
     if (useful == 0 && !isOn(s.causticMap))
-        return decide(plan, "caustic map", "off", fmt::format("0 of {} pilot photons arrived where the camera looks", plan.pilotPhotons));
+        return decide(plan, "caustic map", "off",
+                      fmt::format("0 of {} pilot photons arrived where the camera looks", plan.pilotPhotons));
     plan.causticMap = true;
-    const double perPixel = std::clamp(kUsefulPerPixel / std::max(plan.usefulShare, 1e-6), kPathsPerPixel, kMostPathsPerPixel);
+    const double perPixel =
+        std::clamp(kUsefulPerPixel / std::max(plan.usefulShare, 1e-6), kPathsPerPixel, kMostPathsPerPixel);
     const auto wanted = static_cast<double>(seen.points.size()) * perPixel;
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
                                               : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
@@ -85,18 +94,25 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     }
     plan.alpha = static_cast<float>(s.alpha);
     if (isOff(s.guiding)) plan.training.clear();
-    decide(plan, "caustic map", "on", fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons), isOn(s.causticMap));
-    decide(plan, "caustic photons", fmt::format("{} paths an iteration", plan.causticPaths),
-           fmt::format("{:.2g} a pixel", static_cast<double>(plan.causticPaths) / static_cast<double>(seen.points.size())), s.causticPhotons >= 0);
+    decide(plan, "caustic map", "on", fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons),
+           isOn(s.causticMap));
+    decide(
+        plan, "caustic photons", fmt::format("{} paths an iteration", plan.causticPaths),
+        fmt::format("{:.2g} a pixel", static_cast<double>(plan.causticPaths) / static_cast<double>(seen.points.size())),
+        s.causticPhotons >= 0);
     if (!fitted.remark.empty()) decide(plan, "caustic photons", "fewer", fitted.remark, true);
     if (s.kernel != Settings{}.kernel) decide(plan, "kernel", s.kernel, "asked for", true);
-    decide(plan, "kernel radius", plan.adaptiveRadius ? "pixel by pixel" : fmt::format("{:.2f} pixel footprints", plan.causticFootprints),
-           plan.adaptiveRadius ? "grows until it holds 60 photons or meets an edge" : "asked for", !plan.adaptiveRadius);
+    decide(plan, "kernel radius",
+           plan.adaptiveRadius ? "pixel by pixel" : fmt::format("{:.2f} pixel footprints", plan.causticFootprints),
+           plan.adaptiveRadius ? "grows until it holds 60 photons or meets an edge" : "asked for",
+           !plan.adaptiveRadius);
     decide(plan, "emission guiding", isOff(s.guiding) ? "off" : "on",
-           fmt::format("{} useful starts in {} cells", useful, EmissionGuide(scene.lights(), plan.training).cells()), isOff(s.guiding));
+           fmt::format("{} useful starts in {} cells", useful, EmissionGuide(scene.lights(), plan.training).cells()),
+           isOff(s.guiding));
 }
 
-void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen, const Workers& workers) {
+void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                  const Workers& workers) {
     const Settings& s = request.settings;
     if (isOff(s.cache)) {
         decide(plan, "irradiance cache", "off", "asked for; indirect light is path traced", true);
@@ -120,8 +136,12 @@ void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, 
     if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);
     if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
     const double share = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
-    decide(plan, "irradiance cache", "on", fmt::format("{:.1f} % of the pixels end at a diffuse surface", share), isOn(s.cache));
-    decide(plan, "global map", plan.globalMap ? "on" : "off", fmt::format("{} photon paths for the first generation of records{}", plan.globalPaths, plan.growPhotons ? ", half as many more for each next" : ""), s.globalPhotons >= 0);
+    decide(plan, "irradiance cache", "on", fmt::format("{:.1f} % of the pixels end at a diffuse surface", share),
+           isOn(s.cache));
+    decide(plan, "global map", plan.globalMap ? "on" : "off",
+           fmt::format("{} photon paths for the first generation of records{}", plan.globalPaths,
+                       plan.growPhotons ? ", half as many more for each next" : ""),
+           s.globalPhotons >= 0);
     if (!fitted.remark.empty()) decide(plan, "global photons", "fewer", fitted.remark, true);
 }
 
@@ -139,11 +159,14 @@ void planReference(Plan& plan, const Scene& scene, const RenderRequest& request,
     const std::size_t delta = pointLikeLights(scene.lights());
     plan.bidirectional = delta > 0;
     decide(plan, "eye paths", plan.bidirectional ? "bidirectional" : "path tracing",
-           fmt::format("{} point-like light{}{}", delta, delta == 1 ? "" : "s", delta > 0 ? ": path tracing sees nothing that their caustics light" : ""));
+           fmt::format("{} point-like light{}{}", delta, delta == 1 ? "" : "s",
+                       delta > 0 ? ": path tracing sees nothing that their caustics light" : ""));
     if (seen.receivers == 0) return;
     plan.texelWidth = static_cast<float>(request.settings.texelWidth) * seen.medianFootprint;
     decide(plan, "texel irradiance", plan.texelWidth > 0.0F ? "on" : "off",
-           fmt::format("caustics in mirrors and through glass by texels {} pixel footprints wide and half that, extrapolated", request.settings.texelWidth),
+           fmt::format(
+               "caustics in mirrors and through glass by texels {} pixel footprints wide and half that, extrapolated",
+               request.settings.texelWidth),
            request.settings.texelWidth == 0.0);
 }
 
@@ -155,14 +178,17 @@ void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) 
     const bool plain = request.method == Method::Path;
     bool glass = false, seenLamps = scene.environment() != nullptr;
     for (const Material& m : scene.surfaces().materials()) glass = glass || m.transmission > 0.0F;
-    for (std::uint32_t l = 0; l < scene.lights().count(); ++l) seenLamps = seenLamps || scene.lights().kind(l) == LightKind::Triangle;
+    for (std::uint32_t l = 0; l < scene.lights().count(); ++l)
+        seenLamps = seenLamps || scene.lights().kind(l) == LightKind::Triangle;
     plan.splitLampChains = glass && seenLamps && (isOn(s.split) || (!plain && !isOff(s.split)));
     if (glass && seenLamps && !(plain && !isOn(s.split)))
-        decide(plan, "lamps through glass", plan.splitLampChains ? "both ways" : "by chance", "the scene has glass, and lamps that can be seen", s.split != "auto");
+        decide(plan, "lamps through glass", plan.splitLampChains ? "both ways" : "by chance",
+               "the scene has glass, and lamps that can be seen", s.split != "auto");
     plan.adaptive = isOn(s.adaptive) || (!plain && !isOff(s.adaptive) && !request.budget.samples);
     if (!plain || plan.adaptive)
         decide(plan, "samples of a pixel", plan.adaptive ? "by its noise" : "alike",
-               request.budget.samples ? "their number is asked for" : "learnt after iterations 4, 8, 16, ...", s.adaptive != "auto");
+               request.budget.samples ? "their number is asked for" : "learnt after iterations 4, 8, 16, ...",
+               s.adaptive != "auto");
 }
 
 /// Which classes the method cannot see: no sampler of its makes such a path.
@@ -170,23 +196,32 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
     const std::size_t delta = pointLikeLights(scene.lights());
     const bool casts = (scene.lobeKinds() & kSpecular) != kNoLobe;
     if (delta > 0 && request.method == Method::Path && request.settings.lightStrategy == "none")
-        plan.blindSpots.push_back(fmt::format("{} point-like light{}: path.lights=none meets lamps by chance, and these never", delta, delta == 1 ? "" : "s"));
+        plan.blindSpots.push_back(
+            fmt::format("{} point-like light{}: path.lights=none meets lamps by chance, and these never", delta,
+                        delta == 1 ? "" : "s"));
     if (!casts || delta == 0) return;
-    const std::string which = fmt::format("{} point-like light{} and surfaces that cast caustics: ", delta, delta == 1 ? "" : "s");
+    const std::string which =
+        fmt::format("{} point-like light{} and surfaces that cast caustics: ", delta, delta == 1 ? "" : "s");
     if (request.method == Method::Path)
         plan.blindSpots.push_back(which + "path tracing sees none of their caustics (E .. D S+ L)");
     if (request.method == Method::Reference)
-        plan.blindSpots.push_back(which + (plan.texelWidth > 0.0F ? "caustics of caustics that are themselves seen in a perfect mirror or through smooth glass (E S+ D S+ D S+ L) and caustics on rough metal seen so are missing"
-                                                                  : "caustics that are themselves seen through glass or in a mirror (E S+ D S+ L) are missing"));
+        plan.blindSpots.push_back(
+            which + (plan.texelWidth > 0.0F
+                         ? "caustics of caustics that are themselves seen in a perfect mirror or through smooth glass "
+                           "(E S+ D S+ D S+ L) and caustics on rough metal seen so are missing"
+                         : "caustics that are themselves seen through glass or in a mirror (E S+ D S+ L) are missing"));
     if (request.method == Method::Bdpt)
-        plan.blindSpots.push_back(which + "bidirectional path tracing sees none of their caustics behind perfect mirrors or smooth glass (E S+ D S+ L)");
-    if (request.method == Method::Photon && !plan.causticMap) plan.blindSpots.push_back(which + "the caustic map is off and path tracing sees none of it");
+        plan.blindSpots.push_back(which +
+                                  "bidirectional path tracing sees none of their caustics behind perfect mirrors or "
+                                  "smooth glass (E S+ D S+ L)");
+    if (request.method == Method::Photon && !plan.causticMap)
+        plan.blindSpots.push_back(which + "the caustic map is off and path tracing sees none of it");
 }
 
 }  // namespace
 
-Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, float kernelFootprints, float largestKernel,
-              const Workers& workers) {
+Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, float kernelFootprints,
+              float largestKernel, const Workers& workers) {
     Survey s;
     const auto width = static_cast<std::size_t>(camera.width());
     s.points.resize(width * static_cast<std::size_t>(camera.height()));
@@ -195,7 +230,8 @@ Survey survey(const TransportContext& context, const Camera& camera, std::uint64
         Walk walk(context);
         for (std::size_t i = begin; i < end; ++i) {
             Sampler sampler(hash64(seed ^ 0x737572766579ULL), i, 0);
-            const CameraRay ray = camera.ray({static_cast<float>(i % width) + 0.5F, static_cast<float>(i / width) + 0.5F}, {0.5F, 0.5F});
+            const CameraRay ray =
+                camera.ray({static_cast<float>(i % width) + 0.5F, static_cast<float>(i / width) + 0.5F}, {0.5F, 0.5F});
             s.points[i] = walk.findGatherPoint({ray.ray, ray.footprintAtOrigin, ray.footprintSpread}, sampler);
         }
         rays[begin / 1024] = walk.rays();
@@ -206,7 +242,8 @@ Survey survey(const TransportContext& context, const Camera& camera, std::uint64
         if (p.valid) footprints.push_back(p.footprint);
     s.receivers = footprints.size();
     if (footprints.empty()) return s;
-    std::nth_element(footprints.begin(), footprints.begin() + static_cast<std::ptrdiff_t>(footprints.size() / 2), footprints.end());
+    std::nth_element(footprints.begin(), footprints.begin() + static_cast<std::ptrdiff_t>(footprints.size() / 2),
+                     footprints.end());
     s.medianFootprint = footprints[footprints.size() / 2];
     // Cells of half the reach of all kernels but the largest few: a mark takes at most five cells along an axis.
     const auto nearlyAll = footprints.begin() + static_cast<std::ptrdiff_t>(footprints.size() * 95 / 100);
@@ -223,14 +260,17 @@ GenerationSize Plan::generation(std::uint32_t number) const noexcept {
     constexpr double kPhotonGrowth = 1.5, kErrorPower = 0.25, kMostPhotons = 1e7;
     constexpr std::uint32_t kRayDoublings = 2;
     GenerationSize size{globalPaths, gatherRays, 0.0F};
-    if (growPhotons) size.globalPaths = static_cast<std::uint32_t>(std::min(globalPaths * std::pow(kPhotonGrowth, number), kMostPhotons));
+    if (growPhotons)
+        size.globalPaths =
+            static_cast<std::uint32_t>(std::min(globalPaths * std::pow(kPhotonGrowth, number), kMostPhotons));
     if (mostGlobalPaths > 0) size.globalPaths = std::min(size.globalPaths, mostGlobalPaths);
     if (growRays) size.gatherRays <<= std::min(number, kRayDoublings);
     size.cacheError = static_cast<float>(static_cast<double>(cacheError) * std::pow(number + 1.0, -kErrorPower));
     return size;
 }
 
-Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen, const Workers& workers) {
+Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen,
+              const Workers& workers) {
     Plan plan;
     plan.alpha = static_cast<float>(request.settings.alpha);
     if (request.method == Method::Photon) {
@@ -245,7 +285,8 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
         } else {
             plan.lightPass = true;
             const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
-            plan.causticPaths = static_cast<std::uint32_t>(std::clamp(static_cast<double>(seen.points.size()), 2e4, 4e6));
+            plan.causticPaths =
+                static_cast<std::uint32_t>(std::clamp(static_cast<double>(seen.points.size()), 2e4, 4e6));
             decide(plan, "light tracing", fmt::format("{} paths an iteration", plan.causticPaths),
                    fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons));
             if (request.method == Method::Reference) planReference(plan, scene, request, seen);
@@ -254,15 +295,18 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
         decide(plan, "photons, cache", "off", "path tracing needs none");
     }
     const bool casts = (scene.lobeKinds() & kSpecular) != kNoLobe;
-    plan.causticChains = plan.cache && casts && (plan.causticMap ? isOn(request.settings.chance) : isOff(request.settings.causticMap));
+    plan.causticChains =
+        plan.cache && casts && (plan.causticMap ? isOn(request.settings.chance) : isOff(request.settings.causticMap));
     const bool photons = request.method != Method::Path && request.method != Method::Bdpt;
-    if (photons && plan.causticLinks.empty()) plan.causticLinks = causticLinks(scene, CasterTally(scene), seen.receivers);
+    if (photons && plan.causticLinks.empty())
+        plan.causticLinks = causticLinks(scene, CasterTally(scene), seen.receivers);
     planEyePaths(plan, scene, request);
     findBlindSpots(plan, scene, request);
     const Budget& b = request.budget;
     if (!b.seconds && !b.samples && !b.rays) {
         plan.timeCap = kDefaultTimeCap;
-        decide(plan, "budget", fmt::format("relative error {}", b.error.value_or(0.05)), fmt::format("at most {} seconds", kDefaultTimeCap));
+        decide(plan, "budget", fmt::format("relative error {}", b.error.value_or(0.05)),
+               fmt::format("at most {} seconds", kDefaultTimeCap));
     }
     return plan;
 }

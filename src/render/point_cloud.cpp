@@ -25,7 +25,8 @@ constexpr double kWhiteShare = 0.95;
 class PlyWriter {
 public:
     PlyWriter(std::size_t count, const std::string& comment, std::initializer_list<const char*> floats) {
-        bytes_ = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " + std::to_string(count) + "\n";
+        bytes_ = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " +
+                 std::to_string(count) + "\n";
         for (const char* name : floats) bytes_ += "property float " + std::string(name) + "\n";
         for (const char* name : {"red", "green", "blue"}) bytes_ += "property uchar " + std::string(name) + "\n";
         bytes_ += "end_header\n";
@@ -81,7 +82,8 @@ std::string recordsPly(const std::vector<IrradianceRecord>& records, const Norma
 }
 
 std::string photonsPly(const PhotonList& photons, const Normalisation& scene) {
-    PlyWriter ply(photons.size(), "caustic photons of the last iteration; metres, W; wi points to where a photon came from",
+    PlyWriter ply(photons.size(),
+                  "caustic photons of the last iteration; metres, W; wi points to where a photon came from",
                   {"x", "y", "z", "nx", "ny", "nz", "wi_x", "wi_y", "wi_z", "flux_red", "flux_green", "flux_blue"});
     const float white = whiteOf(photons, &Photon::flux);
     const double watts = 1.0 / (scene.scale() * scene.scale());  // powers carry the square of the scene's scale
@@ -95,11 +97,13 @@ std::string photonsPly(const PhotonList& photons, const Normalisation& scene) {
     return ply.take();
 }
 
-void writePointClouds(const std::filesystem::path& folder, const std::vector<IrradianceRecord>& records, const PhotonList& photons,
-                      const Normalisation& scene) {
+void writePointClouds(const std::filesystem::path& folder, const std::vector<IrradianceRecord>& records,
+                      const PhotonList& photons, const Normalisation& scene) {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
-    if (failed) throw Error(ErrorKind::CannotFinish, "the folder cannot be made: " + failed.message(), folder.string(), "name one that may be made");
+    if (failed)
+        throw Error(ErrorKind::CannotFinish, "the folder cannot be made: " + failed.message(), folder.string(),
+                    "name one that may be made");
     writeFile(folder / "records.ply", recordsPly(records, scene));
     writeFile(folder / "caustic-photons.ply", photonsPly(photons, scene));
 }

@@ -21,7 +21,7 @@ namespace pellucid {
 [[nodiscard]] std::string photonsPly(const PhotonList& photons, const Normalisation& scene);
 
 /// `records.ply` and `caustic-photons.ply` in a folder, which is made if need be. Throws Error{CannotFinish}.
-void writePointClouds(const std::filesystem::path& folder, const std::vector<IrradianceRecord>& records, const PhotonList& photons,
-                      const Normalisation& scene);
+void writePointClouds(const std::filesystem::path& folder, const std::vector<IrradianceRecord>& records,
+                      const PhotonList& photons, const Normalisation& scene);
 
 }  // namespace pellucid

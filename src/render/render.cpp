@@ -34,7 +34,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kTile = 16;
-constexpr std::uint64_t kCausticPass = 1ULL << 40U, kLightPass = 3ULL << 40U, kBidirectionalPass = 5ULL << 40U;  // 2, 4: learnt_light.cpp
+constexpr std::uint64_t kCausticPass = 1ULL << 40U, kLightPass = 3ULL << 40U,
+                        kBidirectionalPass = 5ULL << 40U;  // 2, 4: learnt_light.cpp
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
 constexpr double kGenerationShare = 1.5;
 /// Where indirect light is less than this part of the image, the next generation comes later in proportion, by up to this.
@@ -62,7 +63,9 @@ constexpr double kSecondsToWritePixel = 6e-7;
 /// Of a budget, for one iteration: else it would be overrun.
 constexpr double kMostOfBudget = 0.04;
 
-[[nodiscard]] double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+[[nodiscard]] double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Adds wall time to a stage while it lives, `scale` times.
 class StageTimer {
@@ -82,8 +85,12 @@ private:
     TransportOptions o;
     o.powerHeuristic = request.settings.misHeuristic == "power";
     const auto& [directions, lights] = std::tie(request.settings.directions, request.settings.lightStrategy);
-    o.directions = directions == "uniform" ? Directions::Uniform : directions == "cosine" ? Directions::Cosine : Directions::Bsdf;
-    o.lights = lights == "none" ? LightStrategy::Chance : lights == "nee" ? LightStrategy::NextEvent : LightStrategy::Both;
+    o.directions = directions == "uniform"  ? Directions::Uniform
+                   : directions == "cosine" ? Directions::Cosine
+                                            : Directions::Bsdf;
+    o.lights = lights == "none"  ? LightStrategy::Chance
+               : lights == "nee" ? LightStrategy::NextEvent
+                                 : LightStrategy::Both;
     o.rouletteThreshold = static_cast<float>(request.settings.rouletteThreshold);
     o.maxDepth = request.settings.maxDepth;
     return o;
@@ -142,9 +149,15 @@ void addEnergy(StageRecord& stage, const EnergyBalance& pass) {
 class Renderer {
 public:
     Renderer(const Scene& scene, const RenderRequest& request, const Workers& workers, const Progress& progress)
-        : scene_(scene), request_(request), workers_(workers), progress_(progress), start_(Clock::now()),
-          camera_(scene.camera(request.camera, request.width, request.height, request.settings.aperture, request.settings.focus)),
-          context_{scene, transportOptions(request), {}}, film_(camera_.width(), camera_.height()) {}
+        : scene_(scene),
+          request_(request),
+          workers_(workers),
+          progress_(progress),
+          start_(Clock::now()),
+          camera_(scene.camera(request.camera, request.width, request.height, request.settings.aperture,
+                               request.settings.focus)),
+          context_{scene, transportOptions(request), {}},
+          film_(camera_.width(), camera_.height()) {}
 
     /// The pilot, and one iteration for what each pass costs.
     [[nodiscard]] RenderRecord plan() {
@@ -156,13 +169,16 @@ public:
 
     [[nodiscard]] SampleReplay replay(int x, int y, std::uint32_t sample) {
         if (x < 0 || y < 0 || x >= camera_.width() || y >= camera_.height())
-            throw Error(ErrorKind::Usage, "the image has no pixel " + std::to_string(x) + "," + std::to_string(y), "--debug-sample",
+            throw Error(ErrorKind::Usage, "the image has no pixel " + std::to_string(x) + "," + std::to_string(y),
+                        "--debug-sample",
                         "it is " + std::to_string(camera_.width()) + "x" + std::to_string(camera_.height()));
         if (request_.method == Method::Light)
-            throw Error(ErrorKind::Usage, "light tracing has no samples of a pixel", "--debug-sample", "give another --method");
+            throw Error(ErrorKind::Usage, "light tracing has no samples of a pixel", "--debug-sample",
+                        "give another --method");
         prepare();
         // Without maps a sample depends on nothing that was before it.
-        if (!plan_.causticMap && !plan_.cache && !plan_.adaptive) film_.countSamples(sample);
+        if (!plan_.causticMap && !plan_.cache && !plan_.adaptive)
+            film_.countSamples(sample);
         else
             for (; film_.samples() < sample && !progress_.stopAsked(); ++iteration_) {
                 iterate();
@@ -176,7 +192,9 @@ public:
         if (bidirectional()) {
             Bidirectional paths(scene_, camera_, context_.options, static_cast<std::uint32_t>(film_.pixels()));
             std::vector<LightSplat> splats;
-            replay.radiance = sampleBidirectional(paths, pixelIndex(x, y), glm::vec2(static_cast<float>(x), static_cast<float>(y)), splats, first, nullptr);
+            replay.radiance =
+                sampleBidirectional(paths, pixelIndex(x, y), glm::vec2(static_cast<float>(x), static_cast<float>(y)),
+                                    splats, first, nullptr);
             replay.vertices = tracedVertices(paths.eyePath());
             replay.lightVertices = tracedVertices(paths.lightPath());
             return replay;
@@ -212,7 +230,8 @@ public:
         if (!request_.checkpoint.empty()) save();
         if (!loaded_) saveLight();
         if (!request_.pointsFolder.empty())
-            writePointClouds(request_.pointsFolder, light_.cache ? light_.cache->records() : std::vector<IrradianceRecord>(),
+            writePointClouds(request_.pointsFolder,
+                             light_.cache ? light_.cache->records() : std::vector<IrradianceRecord>(),
                              causticMap_ ? causticMap_->photons() : PhotonList(), scene_.normalisation());
         RenderResult result;
         result.image = film_.image(request_.layers);
@@ -253,7 +272,9 @@ private:
     [[nodiscard]] bool generationDue() const;
     void renewGeneration();
     void useFrozen();
-    [[nodiscard]] CacheKey fileKey() const { return cacheKey(scene_, resolvedSettings(request_.settings, plan_), plan_.causticMap || plan_.causticChains); }
+    [[nodiscard]] CacheKey fileKey() const {
+        return cacheKey(scene_, resolvedSettings(request_.settings, plan_), plan_.causticMap || plan_.causticChains);
+    }
     void loadLight();
     void saveLight() const;
     void causticPass();
@@ -264,14 +285,18 @@ private:
     void setCausticPaths(std::uint32_t paths);
     /// With those before a break, which decide alike after it.
     [[nodiscard]] std::uint64_t causticRaysSoFar() const noexcept { return causticRaysBefore_ + causticStage_.rays; }
-    [[nodiscard]] std::uint64_t causticEmittedSoFar() const noexcept { return causticEmittedBefore_ + causticStage_.photonsEmitted; }
+    [[nodiscard]] std::uint64_t causticEmittedSoFar() const noexcept {
+        return causticEmittedBefore_ + causticStage_.photonsEmitted;
+    }
     void makeMaps();
-    [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, int number, FirstHit& first, StringSums* strings = nullptr) const;
+    [[nodiscard]] LayeredRadiance samplePixel(Walk& walk, int x, int y, int number, FirstHit& first,
+                                              StringSums* strings = nullptr) const;
     [[nodiscard]] std::uint32_t samplesPerPixel() const;
     void bidirectionalPass();
     [[nodiscard]] bool bidirectional() const noexcept { return request_.method == Method::Bdpt || plan_.bidirectional; }
     [[nodiscard]] LayeredRadiance sampleBidirectional(Bidirectional& paths, std::size_t pixel, const glm::vec2& corner,
-                                                      std::vector<LightSplat>& splats, FirstHit& first, StringSums* strings) const;
+                                                      std::vector<LightSplat>& splats, FirstHit& first,
+                                                      StringSums* strings) const;
     template <class Body>
     void forTiles(const Body& body) const;
     [[nodiscard]] std::size_t tiles() const;
@@ -279,7 +304,9 @@ private:
     void keepWindows();
     [[nodiscard]] std::uint64_t ofWholeImage(std::uint64_t rays) const;
     [[nodiscard]] std::uint64_t raysSoFar() const;
-    [[nodiscard]] bool outOfTime(double share) const { return request_.budget.seconds && elapsed() > share * *request_.budget.seconds; }
+    [[nodiscard]] bool outOfTime(double share) const {
+        return request_.budget.seconds && elapsed() > share * *request_.budget.seconds;
+    }
     /// With what the passes over pixels would have taken for the whole image.
     [[nodiscard]] double elapsed() const {
         const double overPixels = cacheStage_.seconds + eyeStage_.seconds;
@@ -293,7 +320,8 @@ private:
     /// Iterations 0, 1, 3, 7, ...: guide and radii learn from their photons.
     [[nodiscard]] bool learningIteration() const noexcept { return (iteration_ & (iteration_ + 1)) == 0; }
     [[nodiscard]] float kernelFootprints(int x, int y) const noexcept {
-        return (kernelRadii_ ? kernelRadii_->at(x, y) : plan_.causticFootprints) * static_cast<float>(std::sqrt(radiusScale_));
+        return (kernelRadii_ ? kernelRadii_->at(x, y) : plan_.causticFootprints) *
+               static_cast<float>(std::sqrt(radiusScale_));
     }
     void learn(std::vector<UsefulEmission> useful);
     void weighByNeed(std::vector<UsefulEmission>& useful) const;
@@ -325,15 +353,15 @@ private:
     bool loaded_ = false;
     double raysLoaded_ = 0.0;
     ReuseReport reuse_;
-    double radiusScale_ = 1.0;         ///< squared, of the caustic kernel
-    std::vector<bool> inWindow_;       ///< by pixel; empty: all are
-    double windowScale_ = 1.0;         ///< pixels of the image / pixels in windows
+    double radiusScale_ = 1.0;                                        ///< squared, of the caustic kernel
+    std::vector<bool> inWindow_;                                      ///< by pixel; empty: all are
+    double windowScale_ = 1.0;                                        ///< pixels of the image / pixels in windows
     std::uint64_t causticRaysBefore_ = 0, causticEmittedBefore_ = 0;  ///< before a break
     std::uint32_t iteration_ = 0, generation_ = 0;
     double raysOfGeneration_ = 0.0, raysSince_ = 0.0, secondsOfGeneration_ = 0.0, secondsOfIteration_ = 0.0;
     double lastSave_ = 0.0;
-    StageRecord pilotStage_{"pilot"}, causticStage_{"caustic photons"}, globalStage_{"global photons"}, cacheStage_{"irradiance cache"},
-        lightStage_{"light tracing"}, eyeStage_{"eye pass"};
+    StageRecord pilotStage_{"pilot"}, causticStage_{"caustic photons"}, globalStage_{"global photons"},
+        cacheStage_{"irradiance cache"}, lightStage_{"light tracing"}, eyeStage_{"eye pass"};
 };
 
 void Renderer::prepare() {
@@ -341,7 +369,8 @@ void Renderer::prepare() {
     const auto& layers = request_.layers;
     if (std::find(layers.begin(), layers.end(), "classes") != layers.end()) film_.keepStrings(scene_.lobeKinds());
     if (request_.method != Method::Path && request_.method != Method::Bdpt) {
-        survey_ = survey(context_, camera_, request_.seed, std::max(KernelRadiusOptions{}.largest, static_cast<float>(request_.settings.causticRadius)),
+        survey_ = survey(context_, camera_, request_.seed,
+                         std::max(KernelRadiusOptions{}.largest, static_cast<float>(request_.settings.causticRadius)),
                          kMaxCausticRadius * scene_.radius(), workers_);
         pilotStage_.rays += survey_.rays;
     }
@@ -349,7 +378,9 @@ void Renderer::prepare() {
     if (auto remark = endlessRemark(scene_, camera_)) plan_.blindSpots.push_back(*remark);
     pilotStage_.rays += plan_.pilotRays;
     pilotStage_.photonsEmitted += plan_.pilotPhotons;
-    if (plan_.causticMap && plan_.adaptiveRadius) kernelRadii_ = std::make_unique<KernelRadii>(camera_.width(), camera_.height(), radiusOptions(request_.settings));
+    if (plan_.causticMap && plan_.adaptiveRadius)
+        kernelRadii_ =
+            std::make_unique<KernelRadii>(camera_.width(), camera_.height(), radiusOptions(request_.settings));
     if (request_.method == Method::Reference) context_.options.left = {plan_.lightPass, plan_.texelWidth > 0.0F};
     if (plan_.texelWidth > 0.0F) texels_ = std::make_unique<TexelIrradiance>(scene_, camera_, plan_.texelWidth);
     if (plan_.causticMap || plan_.lightPass) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
@@ -366,7 +397,8 @@ void Renderer::keepWindows() {
     for (const PixelWindow& w : request_.windows)
         for (int y = std::max(0, w.y0); y < std::min(w.y1, camera_.height()); ++y)
             for (int x = std::max(0, w.x0); x < std::min(w.x1, camera_.width()); ++x)
-                inWindow_[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x)] = true;
+                inWindow_[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) +
+                          static_cast<std::size_t>(x)] = true;
     const auto inside = std::count(inWindow_.begin(), inWindow_.end(), true);
     windowScale_ = static_cast<double>(film_.pixels()) / static_cast<double>(std::max<std::ptrdiff_t>(1, inside));
     for (std::size_t i = 0; i < survey_.points.size(); ++i)
@@ -379,7 +411,8 @@ std::uint64_t Renderer::ofWholeImage(std::uint64_t rays) const {
 
 std::uint64_t Renderer::raysSoFar() const {
     std::uint64_t rays = 0;
-    for (const StageRecord* s : {&pilotStage_, &globalStage_, &cacheStage_, &causticStage_, &lightStage_, &eyeStage_}) rays += s->rays;
+    for (const StageRecord* s : {&pilotStage_, &globalStage_, &cacheStage_, &causticStage_, &lightStage_, &eyeStage_})
+        rays += s->rays;
     return rays;
 }
 
@@ -391,7 +424,8 @@ bool Renderer::generationDue() const {
     const double patience = std::clamp(kMuchIndirect / std::max(film_.indirectShare(), 1e-6), 1.0, kMostPatience);
     if (raysSince_ <= kGenerationShare * patience * raysOfGeneration_) return false;
     // Near the end of a budget of time a new one would not be used enough.
-    const double asLearnt = eyeStage_.seconds * raysOfGeneration_ / std::max(1.0, static_cast<double>(eyeStage_.rays));  // if it was loaded
+    const double asLearnt =
+        eyeStage_.seconds * raysOfGeneration_ / std::max(1.0, static_cast<double>(eyeStage_.rays));  // if it was loaded
     const double next = std::max(secondsOfGeneration_, loaded_ ? asLearnt : 0.0) * kGenerationGrowth;
     return !request_.budget.seconds || elapsed() + (1.0 + kGenerationShare) * next <= *request_.budget.seconds;
 }
@@ -406,9 +440,12 @@ void Renderer::iterate() {
     const double once = globalStage_.seconds + cacheStage_.seconds, began = elapsed();
     makeMaps();
     if (plan_.lightPass) lightPass();
-    if (bidirectional()) bidirectionalPass();
-    else if (request_.method != Method::Light) eyePass();
-    else film_.countSamples(1);
+    if (bidirectional())
+        bidirectionalPass();
+    else if (request_.method != Method::Light)
+        eyePass();
+    else
+        film_.countSamples(1);
     secondsOfIteration_ = elapsed() - began - (globalStage_.seconds + cacheStage_.seconds - once);
 }
 
@@ -425,8 +462,11 @@ void Renderer::renewGeneration() {
     }
     const bool first = !light_.cache;
     LearntLight before = std::exchange(light_, {});
-    const auto cut = [this, first] { return progress_.stopAsked() || outOfTime(first ? kCacheShare : kLaterCacheShare); };
-    const std::size_t places = light.map ? light.map->points() : 0, records = light.cache ? light.cache->records().size() : 0;
+    const auto cut = [this, first] {
+        return progress_.stopAsked() || outOfTime(first ? kCacheShare : kLaterCacheShare);
+    };
+    const std::size_t places = light.map ? light.map->points() : 0,
+                      records = light.cache ? light.cache->records().size() : 0;
     const std::uint64_t view = hashOf(survey_);
     const bool complete = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
     context_.maps.cache = nullptr;
@@ -445,12 +485,14 @@ void Renderer::renewGeneration() {
     if (plan_.causticMap) context_.maps.caustic = &none;
     if (!complete) {
         const StageTimer timer(cacheStage_, windowScale_);
-        CacheBuild build = buildCache(context_, survey_, camera_.width(), plan_, light.size, light.gatherSeed(), workers_,
-                                      cut,
-                                      light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr);
+        CacheBuild build =
+            buildCache(context_, survey_, camera_.width(), plan_, light.size, light.gatherSeed(), workers_, cut,
+                       light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr);
         const bool whole = !cut();
-        if (!whole && !first) light = std::move(before);  // whole records of the last generation rather than half of this one's
-        else light.cache = std::move(build.cache);
+        if (!whole && !first)
+            light = std::move(before);  // whole records of the last generation rather than half of this one's
+        else
+            light.cache = std::move(build.cache);
         cacheStage_.rays += ofWholeImage(build.rays);
         if (whole || first) {
             cacheStage_.records += light.cache->records().size() - records;
@@ -528,7 +570,8 @@ void Renderer::learn(std::vector<UsefulEmission> useful) {
 
 void Renderer::causticPass() {
     const StageTimer timer(causticStage_);
-    CausticPass pass = traceCausticPhotons(scene_, *guide_, {request_.seed, kCausticPass + iteration_, plan_.causticPaths}, &survey_.visible, workers_);
+    CausticPass pass = traceCausticPhotons(
+        scene_, *guide_, {request_.seed, kCausticPass + iteration_, plan_.causticPaths}, &survey_.visible, workers_);
     causticStage_.rays += pass.rays;
     causticStage_.photonsEmitted += pass.emitted;
     addEnergy(causticStage_, pass.energy);
@@ -549,18 +592,24 @@ void Renderer::fitRadii() {
     const std::uint32_t n = film_.samples();
     if (n < kCorrectRadiiAfter || (n & (n - 1)) != 0) return;
     const double floor = kLeastLuminance * film_.meanLuminance();
-    kernelRadii_->correct(n, [&](int x, int y) {
-        const PixelNoise noise = film_.noise(pixelIndex(x, y));
-        const double scale = static_cast<double>(noise.luminance) * static_cast<double>(noise.luminance) + floor * floor;
-        return KernelRadii::Shown{static_cast<double>(noise.photonVariance) / scale, static_cast<double>(noise.blur2) / scale};
-    }, workers_);
+    kernelRadii_->correct(
+        n,
+        [&](int x, int y) {
+            const PixelNoise noise = film_.noise(pixelIndex(x, y));
+            const double scale =
+                static_cast<double>(noise.luminance) * static_cast<double>(noise.luminance) + floor * floor;
+            return KernelRadii::Shown{static_cast<double>(noise.photonVariance) / scale,
+                                      static_cast<double>(noise.blur2) / scale};
+        },
+        workers_);
 }
 
 void Renderer::lightPass() {
     const StageTimer timer(lightStage_);
     if (texels_) texels_->look(request_.seed, iteration_, workers_);
-    LightPass pass = traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths}, workers_,
-                                     texels_ ? &survey_.visible : nullptr);
+    LightPass pass =
+        traceLightPaths(scene_, camera_, *guide_, {request_.seed, kLightPass + iteration_, plan_.causticPaths},
+                        workers_, texels_ ? &survey_.visible : nullptr);
     lightStage_.rays += pass.rays;
     lightStage_.photonsEmitted += pass.emitted;
     addEnergy(lightStage_, pass.energy);
@@ -575,13 +624,16 @@ void Renderer::lightPass() {
 }
 
 /// Sample `number` of this iteration: keyed by seed, pixel and how many went before, whatever was sampled elsewhere.
-LayeredRadiance Renderer::samplePixel(Walk& walk, int x, int y, int number, FirstHit& first, StringSums* strings) const {
+LayeredRadiance Renderer::samplePixel(Walk& walk, int x, int y, int number, FirstHit& first,
+                                      StringSums* strings) const {
     const std::size_t pixel = pixelIndex(x, y);
-    const std::uint32_t index = (plan_.adaptive ? film_.taken(pixel) : film_.samples()) + static_cast<std::uint32_t>(number);
+    const std::uint32_t index =
+        (plan_.adaptive ? film_.taken(pixel) : film_.samples()) + static_cast<std::uint32_t>(number);
     Sampler sampler(request_.seed, pixel, index, samplerKind(request_.settings.sampler));
     const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
     const CameraRay ray = camera_.ray(glm::vec2(static_cast<float>(x), static_cast<float>(y)) + jitter, lens);
-    return walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), kernelFootprints(x, y)}, sampler, &first, strings);
+    return walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), kernelFootprints(x, y)},
+                        sampler, &first, strings);
 }
 
 /// After iterations 4, 8, 16, ...: samples go where the noise is.
@@ -595,13 +647,21 @@ void Renderer::renewShares() {
         if (noise[i].inside) eyeRays += static_cast<double>(noise[i].rays);
     }
     ShareLimits limits;
-    if (plan_.causticMap) limits.photonRays = kPhotonRayTime * static_cast<double>(causticRaysSoFar()) / ((iteration_ + 1) * windowScale_);
+    if (plan_.causticMap)
+        limits.photonRays =
+            kPhotonRayTime * static_cast<double>(causticRaysSoFar()) / ((iteration_ + 1) * windowScale_);
     const Budget& b = request_.budget;
-    const double once = eyeStage_.seconds * static_cast<double>(film_.pixels()) / (windowScale_ * static_cast<double>(std::max<std::uint64_t>(1, film_.taken())));
-    if (b.seconds) limits.mostMean = static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * *b.seconds / std::max(1e-9, once)));
-    if (b.rays) limits.mostMean = static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * static_cast<double>(*b.rays) / std::max(1.0, eyeRays * windowScale_)));
+    const double once = eyeStage_.seconds * static_cast<double>(film_.pixels()) /
+                        (windowScale_ * static_cast<double>(std::max<std::uint64_t>(1, film_.taken())));
+    if (b.seconds)
+        limits.mostMean =
+            static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * *b.seconds / std::max(1e-9, once)));
+    if (b.rays)
+        limits.mostMean = static_cast<float>(std::min<double>(
+            limits.mostMean, kMostOfBudget * static_cast<double>(*b.rays) / std::max(1.0, eyeRays * windowScale_)));
     limits.fixedPhotons = !plan_.causticMap || request_.settings.causticPhotons >= 0;
-    const SampleShares chosen = sampleShares(noise, camera_.width(), camera_.height(), limits, hashCombine(request_.seed, n));
+    const SampleShares chosen =
+        sampleShares(noise, camera_.width(), camera_.height(), limits, hashCombine(request_.seed, n));
     film_.setShares(chosen.ofPixel);
     if (limits.fixedPhotons) return;
     const double most = plan_.mostCausticPaths > 0 ? std::min<double>(plan_.mostCausticPaths, kMostPaths) : kMostPaths;
@@ -616,11 +676,13 @@ void Renderer::setCausticPaths(std::uint32_t paths) {
 
 std::uint32_t Renderer::samplesPerPixel() const {
     if (!plan_.adaptive) return film_.samples();
-    return static_cast<std::uint32_t>(static_cast<double>(film_.taken()) * windowScale_ / static_cast<double>(film_.pixels()));
+    return static_cast<std::uint32_t>(static_cast<double>(film_.taken()) * windowScale_ /
+                                      static_cast<double>(film_.pixels()));
 }
 
 std::size_t Renderer::tiles() const {
-    return static_cast<std::size_t>((camera_.width() + kTile - 1) / kTile) * static_cast<std::size_t>((camera_.height() + kTile - 1) / kTile);
+    return static_cast<std::size_t>((camera_.width() + kTile - 1) / kTile) *
+           static_cast<std::size_t>((camera_.height() + kTile - 1) / kTile);
 }
 
 /// Calls body(tile, pixels of the tile as (index, film position of its corner) callback) in parallel.
@@ -632,7 +694,8 @@ void Renderer::forTiles(const Body& body) const {
         body(tile, [&](const auto& visit) {
             for (int y = y0; y < std::min(y0 + kTile, camera_.height()); ++y)
                 for (int x = x0; x < std::min(x0 + kTile, camera_.width()); ++x)
-                    visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) + static_cast<std::size_t>(x),
+                    visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width()) +
+                              static_cast<std::size_t>(x),
                           glm::vec2(static_cast<float>(x), static_cast<float>(y)));
         });
     });
@@ -656,8 +719,9 @@ void Renderer::eyePass() {
             for (int k = 0; k < share; ++k) {
                 FirstHit first;
                 ofSample.clear();
-                const LayeredRadiance radiance = samplePixel(walk, static_cast<int>(corner.x), static_cast<int>(corner.y), k, first,
-                                                             film_.keepsStrings() ? &ofSample : nullptr);
+                const LayeredRadiance radiance =
+                    samplePixel(walk, static_cast<int>(corner.x), static_cast<int>(corner.y), k, first,
+                                film_.keepsStrings() ? &ofSample : nullptr);
                 if (!film_.admit(pixel, film_.samples(), radiance)) continue;
                 sum.addShare(radiance, 1.0F / static_cast<float>(share));
                 firsts.addShare(first, 1.0F / static_cast<float>(share));
@@ -674,7 +738,8 @@ void Renderer::eyePass() {
 
 /// As samplePixel, with a light path of its own number beside the eye path.
 LayeredRadiance Renderer::sampleBidirectional(Bidirectional& paths, std::size_t pixel, const glm::vec2& corner,
-                                              std::vector<LightSplat>& splats, FirstHit& first, StringSums* strings) const {
+                                              std::vector<LightSplat>& splats, FirstHit& first,
+                                              StringSums* strings) const {
     const SamplerKind numbers = samplerKind(request_.settings.sampler);
     Sampler eye(request_.seed, pixel, film_.samples(), numbers);
     Sampler light(request_.seed, kBidirectionalPass + film_.samples(), static_cast<std::uint32_t>(pixel), numbers);
@@ -693,8 +758,8 @@ void Renderer::bidirectionalPass() {
         forPixels([&](std::size_t pixel, const glm::vec2& corner) {
             FirstHit first;
             strings.clear();
-            const LayeredRadiance radiance =
-                sampleBidirectional(paths, pixel, corner, splats[tile], first, film_.keepsStrings() ? &strings : nullptr);
+            const LayeredRadiance radiance = sampleBidirectional(paths, pixel, corner, splats[tile], first,
+                                                                 film_.keepsStrings() ? &strings : nullptr);
             film_.add(pixel, film_.samples(), radiance, first);
         });
         rays[tile] = paths.rays();
@@ -711,9 +776,12 @@ void Renderer::bidirectionalPass() {
 double Renderer::fractionDone() const {
     const Budget& b = request_.budget;
     double fraction = 0.0;
-    if (b.samples) fraction = std::max(fraction, static_cast<double>(samplesPerPixel()) / std::max<std::uint32_t>(1, *b.samples));
+    if (b.samples)
+        fraction = std::max(fraction, static_cast<double>(samplesPerPixel()) / std::max<std::uint32_t>(1, *b.samples));
     if (b.seconds) fraction = std::max(fraction, elapsed() / std::max(1e-3, *b.seconds));
-    if (b.rays) fraction = std::max(fraction, static_cast<double>(raysSoFar()) / static_cast<double>(std::max<std::uint64_t>(1, *b.rays)));
+    if (b.rays)
+        fraction = std::max(
+            fraction, static_cast<double>(raysSoFar()) / static_cast<double>(std::max<std::uint64_t>(1, *b.rays)));
     if (!b.samples && !b.seconds && !b.rays) {
         const double target = b.error.value_or(kDefaultError), now = film_.relativeError();
         fraction = std::max(now > 0.0 ? std::pow(target / now, 2.0) : 1.0, elapsed() / plan_.timeCap);
@@ -743,7 +811,8 @@ void Renderer::tell(std::string_view stage) const {
     r.fraction = fractionDone();
     r.secondsElapsed = elapsed();
     if (r.fraction > 0.0) r.secondsLeft = r.secondsElapsed * (1.0 / r.fraction - 1.0);
-    r.samplesPerSecond = static_cast<double>(samplesPerPixel()) * static_cast<double>(film_.pixels()) / std::max(1e-6, r.secondsElapsed);
+    r.samplesPerSecond =
+        static_cast<double>(samplesPerPixel()) * static_cast<double>(film_.pixels()) / std::max(1e-6, r.secondsElapsed);
     progress_.report(r);
 }
 
@@ -764,7 +833,9 @@ RenderRecord Renderer::record() const {
     r.resolved = resolvedSettings(request_.settings, plan_);
     r.threads = workers_.threads();
     r.reuse = reuse_;
-    if (texels_) r.texels = {texels_->texels(), static_cast<double>(plan_.texelWidth) / scene_.normalisation().scale(), texels_->extrapolated()};
+    if (texels_)
+        r.texels = {texels_->texels(), static_cast<double>(plan_.texelWidth) / scene_.normalisation().scale(),
+                    texels_->extrapolated()};
     return r;
 }
 
@@ -784,14 +855,16 @@ void Renderer::addRecordsLayer(Image& image) const {
         if (!film) continue;
         const int x = static_cast<int>(film->position.x), y = static_cast<int>(film->position.y);
         if (x < 0 || y < 0 || x >= image.width() || y >= image.height()) continue;
-        wider.at(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) + static_cast<std::size_t>(x), channel) += 1.0F;
+        wider.at(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width()) + static_cast<std::size_t>(x),
+                 channel) += 1.0F;
     }
     image = std::move(wider);
 }
 
 CheckpointKey Renderer::checkpointKey() const {
-    std::string key = scene_.hash() + "|" + std::to_string(static_cast<int>(request_.method)) + "|" + std::to_string(request_.seed) + "|" +
-                      request_.camera + "|" + std::to_string(camera_.width()) + "x" + std::to_string(camera_.height());
+    std::string key = scene_.hash() + "|" + std::to_string(static_cast<int>(request_.method)) + "|" +
+                      std::to_string(request_.seed) + "|" + request_.camera + "|" + std::to_string(camera_.width()) +
+                      "x" + std::to_string(camera_.height());
     for (const auto& [name, value] : settingsAsText(request_.settings)) key += "|" + name + "=" + value;
     for (const PixelWindow& w : request_.windows)
         for (const int side : {w.x0, w.y0, w.x1, w.y1}) key += "|" + std::to_string(side);
@@ -799,7 +872,8 @@ CheckpointKey Renderer::checkpointKey() const {
 }
 
 void Renderer::save() const {
-    CheckpointState state{iteration_, generation_, raysOfGeneration_, raysSince_, film_.save(), {}, {}, plan_.causticPaths, causticRaysSoFar(), causticEmittedSoFar()};
+    CheckpointState state{iteration_, generation_, raysOfGeneration_,  raysSince_,         film_.save(),
+                          {},         {},          plan_.causticPaths, causticRaysSoFar(), causticEmittedSoFar()};
     state.training.resize(plan_.training.size() * sizeof(UsefulEmission));
     if (!plan_.training.empty()) std::memcpy(state.training.data(), plan_.training.data(), state.training.size());
     if (kernelRadii_) state.radii = kernelRadii_->save();
@@ -823,7 +897,8 @@ void Renderer::resume() {
     causticEmittedBefore_ = state->causticEmitted;
     if (!film_.restore(state->film) || state->training.size() % sizeof(UsefulEmission) != 0 ||
         (kernelRadii_ && !kernelRadii_->restore(state->radii, workers_)))
-        throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", request_.checkpoint.string(), "delete it or render without --resume");
+        throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", request_.checkpoint.string(),
+                    "delete it or render without --resume");
     plan_.training.resize(state->training.size() / sizeof(UsefulEmission));
     if (!plan_.training.empty()) std::memcpy(plan_.training.data(), state->training.data(), state->training.size());
     if (guide_) guide_ = std::make_unique<EmissionGuide>(scene_.lights(), plan_.training);
@@ -832,20 +907,22 @@ void Renderer::resume() {
         renewGeneration();
     }
     for (iteration_ = 0; iteration_ < state->iteration; ++iteration_)
-        if (plan_.causticMap && iteration_ > 0) radiusScale_ *= (iteration_ + static_cast<double>(plan_.alpha)) / (iteration_ + 1.0);
+        if (plan_.causticMap && iteration_ > 0)
+            radiusScale_ *= (iteration_ + static_cast<double>(plan_.alpha)) / (iteration_ + 1.0);
     raysOfGeneration_ = state->raysOfGeneration;
     raysSince_ = state->raysSince;
 }
 
 }  // namespace
 
-RenderResult render(const Scene& scene, const RenderRequest& request, const Workers& workers, const Progress& progress, const LogSink& log) {
+RenderResult render(const Scene& scene, const RenderRequest& request, const Workers& workers, const Progress& progress,
+                    const LogSink& log) {
     (void)log;
     return Renderer(scene, request, workers, progress).run();
 }
 
-void renderViews(const Scene& scene, const RenderRequest& request, const std::vector<std::string>& cameras, const FrameDone& done,
-                 const Workers& workers, const Progress& progress) {
+void renderViews(const Scene& scene, const RenderRequest& request, const std::vector<std::string>& cameras,
+                 const FrameDone& done, const Workers& workers, const Progress& progress) {
     RenderRequest frame = request;
     frame.cacheFile.clear();
     const Clock::time_point start = Clock::now();
@@ -866,7 +943,8 @@ void renderViews(const Scene& scene, const RenderRequest& request, const std::ve
     };
     // One plan of the caustic map for all: records leave to it what it holds.
     forViews(1, [&](std::size_t) {
-        if (frame.settings.causticMap == "auto" && Renderer(scene, frame, workers, progress).wantsCausticMap()) frame.settings.causticMap = "on";
+        if (frame.settings.causticMap == "auto" && Renderer(scene, frame, workers, progress).wantsCausticMap())
+            frame.settings.causticMap = "on";
     });
     std::optional<LearntLight> light;
     if (!request.cacheFile.empty() && !cameras.empty()) {
@@ -876,7 +954,9 @@ void renderViews(const Scene& scene, const RenderRequest& request, const std::ve
     const double before = light ? light->rays : 0.0;
     // Twice: what a later view adds shrinks the records of an earlier one beside it.
     constexpr std::size_t kSweeps = 2;
-    const std::uint32_t generation = cameras.size() >= 8 ? 2 : cameras.size() >= 3 ? 1 : 0;  // the more views share the cost the better
+    const std::uint32_t generation = cameras.size() >= 8   ? 2
+                                     : cameras.size() >= 3 ? 1
+                                                           : 0;  // the more views share the cost the better
     forViews(kSweeps, [&](std::size_t i) {
         if (i >= cameras.size() && (!light || light->rays == before)) return;
         if (i == cameras.size()) light->seen.clear();
@@ -894,8 +974,8 @@ void renderViews(const Scene& scene, const RenderRequest& request, const std::ve
     });
 }
 
-SampleReplay replaySample(const Scene& scene, const RenderRequest& request, int x, int y, std::uint32_t sample, const Workers& workers,
-                          const Progress& progress) {
+SampleReplay replaySample(const Scene& scene, const RenderRequest& request, int x, int y, std::uint32_t sample,
+                          const Workers& workers, const Progress& progress) {
     return Renderer(scene, request, workers, progress).replay(x, y, sample);
 }
 

@@ -27,7 +27,9 @@ constexpr std::array<float, 7> kMeans{1.0F, 1.5F, 2.0F, 3.0F, 4.0F, 6.0F, 8.0F};
         for (int x = 0; x < width; ++x) {
             const int first = std::max(0, x - kNeighbours), last = std::min(width - 1, x + kNeighbours);
             float sum = 0.0F;
-            for (int i = first; i <= last; ++i) sum += value[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)];
+            for (int i = first; i <= last; ++i)
+                sum +=
+                    value[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)];
             result[static_cast<std::size_t>(x) * static_cast<std::size_t>(height) + static_cast<std::size_t>(y)] =
                 sum / static_cast<float>(last - first + 1);
         }
@@ -35,10 +37,10 @@ constexpr std::array<float, 7> kMeans{1.0F, 1.5F, 2.0F, 3.0F, 4.0F, 6.0F, 8.0F};
 }
 
 struct Need {
-    std::vector<float> relative;      ///< eye variance of a sample / (L^2 + e2)
+    std::vector<float> relative;  ///< eye variance of a sample / (L^2 + e2)
     std::vector<float> rays;
-    std::vector<float> wish;          ///< sqrt(relative / rays)
-    double photons = 0.0;             ///< sum of the photons' relative variance
+    std::vector<float> wish;  ///< sqrt(relative / rays)
+    double photons = 0.0;     ///< sum of the photons' relative variance
 };
 
 [[nodiscard]] Need needOf(const std::vector<PixelNoise>& noise, int width, int height) {
@@ -73,10 +75,11 @@ struct Need {
 struct Allotment {
     float scale = 0.0F;
     double photons = 1.0;
-    double cost = 0.0;                ///< (photons' + eye's variance) x (photons' + eye's rays)
+    double cost = 0.0;  ///< (photons' + eye's variance) x (photons' + eye's rays)
 };
 
-[[nodiscard]] Allotment allot(const std::vector<PixelNoise>& noise, const Need& need, double mean, const ShareLimits& limits) {
+[[nodiscard]] Allotment allot(const std::vector<PixelNoise>& noise, const Need& need, double mean,
+                              const ShareLimits& limits) {
     double inside = 0.0;
     for (const PixelNoise& p : noise) inside += p.inside ? 1.0 : 0.0;
     float low = 1e-6F, high = 1e12F;

@@ -18,19 +18,19 @@
 namespace pellucid {
 
 struct ShareLimits {
-    float mostOfPixel = 32.0F;        ///< samples of one pixel in an iteration
-    float mostMean = 8.0F;            ///< of an iteration, over the pixels
-    double photonRays = 0.0;          ///< of an iteration, in units of an eye ray's time
-    bool fixedPhotons = false;        ///< their number is not to be changed
+    float mostOfPixel = 32.0F;  ///< samples of one pixel in an iteration
+    float mostMean = 8.0F;      ///< of an iteration, over the pixels
+    double photonRays = 0.0;    ///< of an iteration, in units of an eye ray's time
+    bool fixedPhotons = false;  ///< their number is not to be changed
 };
 
 struct SampleShares {
     std::vector<std::uint8_t> ofPixel;  ///< samples in an iteration, at least 1
-    double photons = 1.0;             ///< photon paths, as a multiple of those of the iterations so far
+    double photons = 1.0;               ///< photon paths, as a multiple of those of the iterations so far
 };
 
 /// `seed` keys the rounding.
-[[nodiscard]] SampleShares sampleShares(const std::vector<PixelNoise>& noise, int width, int height, const ShareLimits& limits,
-                                        std::uint64_t seed);
+[[nodiscard]] SampleShares sampleShares(const std::vector<PixelNoise>& noise, int width, int height,
+                                        const ShareLimits& limits, std::uint64_t seed);
 
 }  // namespace pellucid

@@ -38,18 +38,22 @@ std::optional<std::string> unseal(std::string_view bytes, const SealedKind& kind
     return std::string(body);
 }
 
-void writeSealed(const std::filesystem::path& file, const SealedKind& kind, std::string_view body) { writeFile(file, seal(kind, body)); }
+void writeSealed(const std::filesystem::path& file, const SealedKind& kind, std::string_view body) {
+    writeFile(file, seal(kind, body));
+}
 
 std::optional<std::string> readSealed(const std::filesystem::path& file, const SealedKind& kind) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return std::nullopt;
     std::ifstream in(file, std::ios::binary);
     if (!in || std::filesystem::is_directory(file, ignored))
-        throw Error(ErrorKind::BadInput, std::string(kind.name) + " cannot be read", file.string(), "give a file that may be read");
+        throw Error(ErrorKind::BadInput, std::string(kind.name) + " cannot be read", file.string(),
+                    "give a file that may be read");
     const std::string all((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
     const std::string_view name = kind.magic.substr(0, kind.magic.find_last_of(' ') + 1);
     if (all.starts_with(name) && !all.starts_with(kind.magic))
-        throw Error(ErrorKind::BadInput, std::string(kind.name) + " is of another version of this program", file.string(), std::string(kind.mend));
+        throw Error(ErrorKind::BadInput, std::string(kind.name) + " is of another version of this program",
+                    file.string(), std::string(kind.mend));
     auto body = unseal(all, kind);
     if (!body) refuseDamaged(file, kind);
     return body;

@@ -44,7 +44,8 @@ public:
         using Item = typename Block::value_type;
         static_assert(std::is_trivially_copyable_v<Item>);
         put(static_cast<std::uint64_t>(block.size()));
-        if (block.size() > 0) bytes_.append(reinterpret_cast<const char*>(block.data()), block.size() * sizeof(Item));  // NOLINT
+        if (block.size() > 0)
+            bytes_.append(reinterpret_cast<const char*>(block.data()), block.size() * sizeof(Item));  // NOLINT
     }
     [[nodiscard]] const std::string& bytes() const noexcept { return bytes_; }
 
@@ -61,8 +62,10 @@ public:
     [[nodiscard]] T get() noexcept {
         static_assert(std::is_trivially_copyable_v<T>);
         T value{};
-        if (left() < sizeof value) fail();
-        else std::memcpy(&value, bytes_.data() + at_, sizeof value), at_ += sizeof value;
+        if (left() < sizeof value)
+            fail();
+        else
+            std::memcpy(&value, bytes_.data() + at_, sizeof value), at_ += sizeof value;
         return value;
     }
     template <class Block>

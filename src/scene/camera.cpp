@@ -68,7 +68,8 @@ CameraRay Camera::ray(const glm::vec2& film, const glm::vec2& lens) const noexce
 
 float Camera::importance(const glm::vec3& direction, float distance) const noexcept {
     const float cosine = glm::dot(direction, forward_);
-    return orthographic_ ? 1.0F / (pixelArea_ * cosine) : 1.0F / (pixelArea_ * cosine * cosine * cosine * distance * distance);
+    return orthographic_ ? 1.0F / (pixelArea_ * cosine)
+                         : 1.0F / (pixelArea_ * cosine * cosine * cosine * distance * distance);
 }
 
 /// The pixel's value is the mean of L over its area A on the film and over the lens. With the film scaled to the

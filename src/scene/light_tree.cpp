@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kBins = 12;
 constexpr int kMaxUnbalancedDepth = 48;  ///< below it ranges are halved, so that the depth stays near 48 + log2 n
-constexpr float kLeastMean = 0.25F;     ///< of full emission, for a node as large as its distance
+constexpr float kLeastMean = 0.25F;      ///< of full emission, for a node as large as its distance
 constexpr double kSlack = 1e-4;          ///< radians added to joined cones against rounding: bounds must hold
 
 /// The smallest cone around two cones of half angles `a.spread`, `b.spread`. [ContyEstevezKulla2018]
@@ -76,7 +76,8 @@ float otherOf(float x) noexcept { return std::sqrt(std::max(0.0F, 1.0F - x * x))
 }  // namespace
 
 MeanEmission MeanEmission::of(const LightBounds& light) noexcept {
-    if (light.spread > 0.0 || light.emission < 0.49 * kPiD) return {1.0F, {}, {}, {}};  // no Lambert emitter: the bounds tell all
+    if (light.spread > 0.0 || light.emission < 0.49 * kPiD)
+        return {1.0F, {}, {}, {}};  // no Lambert emitter: the bounds tell all
     const glm::vec3& n = light.axis;
     MeanEmission mean;
     const float square = light.twoSided ? 15.0F / 16.0F : 15.0F / 32.0F;
@@ -236,7 +237,8 @@ float LightTree::importance(const Node& node, const glm::vec3& point, const glm:
         if (cosReceived <= 0.0F) return 0.0F;
     }
     // A leaf's bound is exact enough; the closer a large node, the less its mean over far directions says.
-    const float emitted = node.leaf ? cosEmitted : std::min(cosEmitted, std::max(node.mean.towards(-wi), kLeastMean * sinSize));
+    const float emitted =
+        node.leaf ? cosEmitted : std::min(cosEmitted, std::max(node.mean.towards(-wi), kLeastMean * sinSize));
     return node.strength * std::max(emitted, 0.01F) * cosReceived / softened2;
 }
 

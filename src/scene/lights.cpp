@@ -225,7 +225,8 @@ EmissionPdf Lights::pdfEmission(std::uint32_t light, const glm::vec3& direction)
             return {pmf, pdfSolidAngleUniformSphere()};
         case LightKind::Spot: {
             const SpotEmitter& spot = parts.spots[entry.index];
-            return {pmf, spotFalloff(spot, glm::dot(spot.direction, direction)) / static_cast<float>(spotSolidAngle(spot).total())};
+            return {pmf, spotFalloff(spot, glm::dot(spot.direction, direction)) /
+                             static_cast<float>(spotSolidAngle(spot).total())};
         }
         case LightKind::Triangle: {
             const EmissiveTriangle& t = parts.triangles[entry.index];

@@ -59,8 +59,10 @@ struct Placement {
     const double determinant = glm::determinant(linear);
     p.mirrored = determinant < 0.0;
     // The cofactor matrix is the inverse transpose up to its scale and exists for singular transforms too.
-    const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
-    const double size = std::max({glm::length(cofactor[0]), glm::length(cofactor[1]), glm::length(cofactor[2]), 1e-300});
+    const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                              glm::cross(linear[0], linear[1]));
+    const double size =
+        std::max({glm::length(cofactor[0]), glm::length(cofactor[1]), glm::length(cofactor[2]), 1e-300});
     p.normalToScene = glm::mat3(cofactor * ((determinant < 0.0 ? -1.0 : 1.0) / size));
     return p;
 }
@@ -85,7 +87,8 @@ void bake(Placement& placement, Mesh& mesh) {
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), toViewer));
     const glm::dvec3 up = glm::cross(toViewer, right);
     const glm::dvec3 position = (glm::dvec3(bounds.centre()) + distance * toViewer) / n.scale() + n.centre;
-    spec.toWorld = glm::dmat4(glm::dvec4(right, 0), glm::dvec4(up, 0), glm::dvec4(toViewer, 0), glm::dvec4(position, 1));
+    spec.toWorld =
+        glm::dmat4(glm::dvec4(right, 0), glm::dvec4(up, 0), glm::dvec4(toViewer, 0), glm::dvec4(position, 1));
     return spec;
 }
 
@@ -169,7 +172,8 @@ SurfacePoint Scene::Impl::surfacePoint(const RawHit& hit) const noexcept {
     if (!mesh.uv1.empty()) p.uv[1] = mesh.uv1[t.x] * wf + mesh.uv1[t.y] * uf + mesh.uv1[t.z] * vf;
     if (!mesh.colors.empty()) p.color = mesh.colors[t.x] * wf + mesh.colors[t.y] * uf + mesh.colors[t.z] * vf;
     if (mesh.tangents.empty() && !mesh.uv0.empty() && description.materials[mesh.material].normalTexture) {
-        const auto& uvs = description.materials[mesh.material].normalTexture.uvSet == 1 && !mesh.uv1.empty() ? mesh.uv1 : mesh.uv0;
+        const auto& uvs =
+            description.materials[mesh.material].normalTexture.uvSet == 1 && !mesh.uv1.empty() ? mesh.uv1 : mesh.uv0;
         const glm::vec2 d1 = uvs[t.y] - uvs[t.x], d2 = uvs[t.z] - uvs[t.x];
         const float det = d1.x * d2.y - d1.y * d2.x;
         glm::vec3 tangent = ((b - a) * d2.y - (c - a) * d1.y) * (det < 0.0F ? -1.0F : 1.0F);
@@ -191,12 +195,17 @@ void Scene::Impl::addPunctual(Lights::Parts& parts) const {
         const glm::vec3 position((light.position - normalisation.centre) * s);
         const glm::vec3 direction(light.direction);
         switch (light.kind) {
-            case PunctualKind::Point: parts.points.push_back({position, light.intensity * area}); break;
+            case PunctualKind::Point:
+                parts.points.push_back({position, light.intensity * area});
+                break;
             case PunctualKind::Spot:
-                parts.spots.push_back({position, direction, light.intensity * area, static_cast<float>(std::cos(light.innerCone)),
+                parts.spots.push_back({position, direction, light.intensity * area,
+                                       static_cast<float>(std::cos(light.innerCone)),
                                        static_cast<float>(std::cos(light.outerCone))});
                 break;
-            case PunctualKind::Directional: parts.directionals.push_back({direction, light.intensity}); break;
+            case PunctualKind::Directional:
+                parts.directionals.push_back({direction, light.intensity});
+                break;
         }
     }
 }
@@ -225,8 +234,9 @@ void Scene::Impl::addEmissive(Lights::Parts& parts) const {
                 int samples = 0;
                 for (int y = 0; y < kSteps; ++y)
                     for (int x = 0; x + y < kSteps; ++x, ++samples)
-                        sum += surfaces->emittedRadiance(
-                            surfacePoint({g, i, (static_cast<float>(x) + 0.33F) / kSteps, (static_cast<float>(y) + 0.33F) / kSteps, 0.0F}), e.normal);
+                        sum += surfaces->emittedRadiance(surfacePoint({g, i, (static_cast<float>(x) + 0.33F) / kSteps,
+                                                                       (static_cast<float>(y) + 0.33F) / kSteps, 0.0F}),
+                                                         e.normal);
                 // Never zero: between the samples the texture may still shine.
                 e.meanRadiance = glm::max(sum / static_cast<float>(samples), material.emission * 1e-3F);
             }
@@ -245,7 +255,8 @@ void Scene::Impl::buildLights() {
     parts.geometries = static_cast<std::uint32_t>(description.geometries.size());
     lights = std::make_unique<Lights>(
         std::move(parts),
-        [](const void* scene, std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric, const glm::vec3& wo) {
+        [](const void* scene, std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric,
+           const glm::vec3& wo) {
             const auto* self = static_cast<const Impl*>(scene);
             const SurfacePoint point = self->surfacePoint({geometry, primitive, barycentric.x, barycentric.y, 0.0F});
             // A path that comes this way by itself meets a lamp of alpha only in this share of its tries.
@@ -275,13 +286,16 @@ void Scene::Impl::mergeCoincidentGlass() {
         if (!(material.transmission > 0.0F && material.thickness > 0.0F)) continue;
         for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
             auto c = corners(g, i);
-            std::sort(c.begin(), c.end(), [](const glm::vec3& a, const glm::vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
+            std::sort(c.begin(), c.end(), [](const glm::vec3& a, const glm::vec3& b) {
+                return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+            });
             const Key key{c[0].x, c[0].y, c[0].z, c[1].x, c[1].y, c[1].z, c[2].x, c[2].y, c[2].z};
             const auto [it, fresh] = open.try_emplace(key, g, i);
             if (fresh) continue;
             const auto [g2, i2] = it->second;
             const Material& other = description.materials[description.meshes[description.geometries[g2].mesh].material];
-            const glm::vec3 n = surfacePoint({g, i, 0.3F, 0.3F, 0.0F}).geometricNormal, n2 = surfacePoint({g2, i2, 0.3F, 0.3F, 0.0F}).geometricNormal;
+            const glm::vec3 n = surfacePoint({g, i, 0.3F, 0.3F, 0.0F}).geometricNormal,
+                            n2 = surfacePoint({g2, i2, 0.3F, 0.3F, 0.0F}).geometricNormal;
             if (glm::dot(n, n2) >= 0.0F || !sameGlass(material, other)) continue;
             for (const auto& [geometry, primitive] : {std::pair(g, i), std::pair(g2, i2)}) {
                 auto& flags = merged[geometry];
@@ -299,8 +313,8 @@ void Scene::Impl::scaleMaterials() {
     for (Material& m : description.materials) m.absorption *= static_cast<float>(1.0 / normalisation.scale());
 }
 
-Scene::Scene(SceneDescription description, std::optional<EnvironmentDescription> environment, const SceneOptions& options,
-             const Workers& workers, const LogSink& log)
+Scene::Scene(SceneDescription description, std::optional<EnvironmentDescription> environment,
+             const SceneOptions& options, const Workers& workers, const LogSink& log)
     : impl_(std::make_unique<Impl>()) {
     (void)workers;
     Impl& s = *impl_;
@@ -330,7 +344,9 @@ Scene::Scene(SceneDescription description, std::optional<EnvironmentDescription>
     if (environment) {
         s.environment = std::make_unique<Environment>(*environment);
         if (environment->mendedTexels > 0)
-            logTo(log, LogLevel::Warning, std::to_string(environment->mendedTexels) + " texels of the environment were negative or not finite and count as 0");
+            logTo(log, LogLevel::Warning,
+                  std::to_string(environment->mendedTexels) +
+                      " texels of the environment were negative or not finite and count as 0");
         if (s.environment->black()) s.environment.reset();
     }
     s.mergeCoincidentGlass();
@@ -338,7 +354,8 @@ Scene::Scene(SceneDescription description, std::optional<EnvironmentDescription>
     if (options.requireLight && (s.lights->count() == 0 || !(s.lights->totalPower() > 0.0)))
         throw Error(ErrorKind::BadInput, "the scene has no light", s.description.name,
                     "add an emissive material or a KHR_lights_punctual light, or give --env FILE.hdr or --env R,G,B");
-    if (s.description.cameras.empty()) s.description.cameras.push_back(framingCamera(s.normalisation, s.accel->bounds()));
+    if (s.description.cameras.empty())
+        s.description.cameras.push_back(framingCamera(s.normalisation, s.accel->bounds()));
     std::uint64_t key = 0;
     for (const char ch : s.description.contentHash + (environment ? environment->contentHash : std::string()))
         key = hashCombine(key, static_cast<unsigned char>(ch));
@@ -362,7 +379,8 @@ std::optional<SurfaceHit> Scene::intersect(const Ray& ray, float coin) const noe
         const float coverage = passes ? 0.0F : s.surfaces->coverage(hit.point);
         if (coin < coverage) return hit;
         coin = std::min((coin - coverage) / std::max(1.0F - coverage, 1e-12F), 0x1.fffffep-1F);
-        const glm::vec3 n = glm::dot(hit.point.geometricNormal, ray.direction) < 0.0F ? -hit.point.geometricNormal : hit.point.geometricNormal;
+        const glm::vec3 n = glm::dot(hit.point.geometricNormal, ray.direction) < 0.0F ? -hit.point.geometricNormal
+                                                                                      : hit.point.geometricNormal;
         current.origin = offsetOrigin(hit.point.position, n);
         travelled += raw.t;
         current.tMax = ray.tMax - travelled;
@@ -411,9 +429,11 @@ namespace {
         if (c.name == nameOrIndex) return c;
     std::size_t index = cameras.size();
     const auto [end, status] = std::from_chars(nameOrIndex.data(), nameOrIndex.data() + nameOrIndex.size(), index);
-    if (status == std::errc() && end == nameOrIndex.data() + nameOrIndex.size() && index < cameras.size()) return cameras[index];
+    if (status == std::errc() && end == nameOrIndex.data() + nameOrIndex.size() && index < cameras.size())
+        return cameras[index];
     std::string known;
-    for (std::size_t i = 0; i < cameras.size(); ++i) known += (i > 0 ? ", " : "") + std::to_string(i) + " '" + cameras[i].name + "'";
+    for (std::size_t i = 0; i < cameras.size(); ++i)
+        known += (i > 0 ? ", " : "") + std::to_string(i) + " '" + cameras[i].name + "'";
     throw Error(ErrorKind::Usage, "there is no camera '" + nameOrIndex + "'", "--camera", "choose one of " + known);
 }
 

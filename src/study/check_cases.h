@@ -18,7 +18,7 @@ void addSlabs(Cases& cases);             ///< 15, 16, 17, 24
 void addLenses(Cases& cases);            ///< 20 to 22, a lamp inside glass
 void addKernels(Cases& cases);           ///< 25 to 27, on synthetic photons
 void addMonteCarlo(Cases& cases);        ///< the lecture's claims
-void addEnergy(Cases& cases);           ///< the account of the photon passes
+void addEnergy(Cases& cases);            ///< the account of the photon passes
 void addScaleExtremes(Cases& cases);     ///< size, place
 void addMaterialExtremes(Cases& cases);  ///< albedo, ior, roughness
 void addGeometryExtremes(Cases& cases);  ///< bad triangles, coincident faces, open glass

@@ -136,7 +136,8 @@ std::vector<Finding> nephroidFlux(const CheckContext& context) {
 
 /// Photons along a strip on the axis: the densest place is the cusp, but for the strip's width, in which the two branches
 /// behind the cusp, |y| ~ (s0 - s)^(3/2), are still one. From the wall, in its radii.
-[[nodiscard]] double brightestOnAxis(const CheckContext& context, const Scene& scene, double radius, std::uint64_t seed) {
+[[nodiscard]] double brightestOnAxis(const CheckContext& context, const Scene& scene, double radius,
+                                     std::uint64_t seed) {
     constexpr int kBins = 80;
     double bins[kBins] = {};
     for (const Photon& p : causticPhotons(context, scene, 200'000, seed)) {
@@ -153,8 +154,8 @@ std::vector<Finding> nephroidFlux(const CheckContext& context) {
 std::vector<Finding> nephroidCusp(const CheckContext& context) {
     const Cylinder c(0.8);
     const Scene scene = makeScene(context, c.scene().description());
-    return {measureSeeds(context, "distance of the brightest place from the wall, photon pass", 0.5 * c.radius, 0.04, 0.04,
-                         [&](std::uint64_t seed) { return brightestOnAxis(context, scene, c.radius, seed); })};
+    return {measureSeeds(context, "distance of the brightest place from the wall, photon pass", 0.5 * c.radius, 0.04,
+                         0.04, [&](std::uint64_t seed) { return brightestOnAxis(context, scene, c.radius, seed); })};
 }
 
 /// A point light on the circle itself, 2R before the wall: 1/p + 1/q = 2/R puts the cusp of the cardioid at q = 2R/3.
@@ -163,7 +164,8 @@ std::vector<Finding> cardioidCusp(const CheckContext& context) {
     SceneBuilder b = c.mirrorAndFloor();
     b.point({-c.radius, 0, 0.6}, 1.0);
     const Scene scene = makeScene(context, b.description());
-    return {measureSeeds(context, "distance of the brightest place from the wall, photon pass", 2.0 / 3.0 * c.radius, 0.04, 0.04,
+    return {measureSeeds(context, "distance of the brightest place from the wall, photon pass", 2.0 / 3.0 * c.radius,
+                         0.04, 0.04,
                          [&](std::uint64_t seed) { return brightestOnAxis(context, scene, c.radius, seed); })};
 }
 
@@ -179,7 +181,8 @@ void addCurvedMirrors(Cases& cases) {
     add("closed-form-23-nephroid-flux", "E = E0 / |1 - 2 s / (R cos phi)| inside a cylindrical mirror",
         "Jacobian of the reflected rays", false, nephroidFlux);
     add("closed-form-23-nephroid-cusp", "the cusp lies at R/2", "[Holditch1858]", false, nephroidCusp);
-    add("closed-form-23-cardioid-cusp", "a light on the circle: the cusp lies at 2R/3, 1/p + 1/q = 2/R", "[Hecht2002, sec. 5.4]", false, cardioidCusp);
+    add("closed-form-23-cardioid-cusp", "a light on the circle: the cusp lies at 2R/3, 1/p + 1/q = 2/R",
+        "[Hecht2002, sec. 5.4]", false, cardioidCusp);
 }
 
 }  // namespace pellucid::check

@@ -43,7 +43,8 @@ struct Passes {
     Passes result;
     result.caustic = caustic.energy;
     for (const Photon& p : caustic.photons)
-        result.photonFlux += (static_cast<double>(p.flux.r) + static_cast<double>(p.flux.g) + static_cast<double>(p.flux.b)) / 3.0;
+        result.photonFlux +=
+            (static_cast<double>(p.flux.r) + static_cast<double>(p.flux.g) + static_cast<double>(p.flux.b)) / 3.0;
     result.global = traceGlobalPhotons(scene, {seed, 2, kPaths}, context.workers).energy;
     const Camera camera = scene.camera("", 16, 16);
     result.light = traceLightPaths(scene, camera, guide, {seed, 3, kPaths}, context.workers).energy;
@@ -64,9 +65,12 @@ std::vector<Finding> balance(const CheckContext& context) {
                                    [&](std::uint64_t seed) { return value(passes(context, scene, seed)); }));
     };
     seeds("watts emitted, global pass", kPower, 0.05, [&](const Passes& p) { return p.global.emitted * watts; });
-    seeds("watts emitted, caustic pass (guided)", kPower, 0.05, [&](const Passes& p) { return p.caustic.emitted * watts; });
-    seeds("roulette's share, global pass", 0.0, 0.01, [](const Passes& p) { return p.global.roulette / p.global.emitted; });
-    seeds("roulette's share, caustic pass", 0.0, 0.01, [](const Passes& p) { return p.caustic.roulette / p.caustic.emitted; });
+    seeds("watts emitted, caustic pass (guided)", kPower, 0.05,
+          [&](const Passes& p) { return p.caustic.emitted * watts; });
+    seeds("roulette's share, global pass", 0.0, 0.01,
+          [](const Passes& p) { return p.global.roulette / p.global.emitted; });
+    seeds("roulette's share, caustic pass", 0.0, 0.01,
+          [](const Passes& p) { return p.caustic.roulette / p.caustic.emitted; });
     return all;
 }
 
@@ -86,19 +90,28 @@ std::vector<Finding> shares(const CheckContext& context) {
         return traceGlobalPhotons(scene, {seed, 0, kPaths}, context.workers).energy;
     };
     return {measureSeeds(context, "share absorbed by clear glass", 0.0, 1e-6, 1e-3,
-                         [&](std::uint64_t seed) { const EnergyBalance e = global(glassScene, seed); return e.absorbed / e.emitted; }),
+                         [&](std::uint64_t seed) {
+                             const EnergyBalance e = global(glassScene, seed);
+                             return e.absorbed / e.emitted;
+                         }),
             measureSeeds(context, "share that escapes past clear glass", 1.0, 1e-3, 1e-3,
-                         [&](std::uint64_t seed) { const EnergyBalance e = global(glassScene, seed); return e.escaped / e.emitted; }),
-            measureSeeds(context, "share absorbed in a closed room", 1.0, 1e-4, 0.02,
-                         [&](std::uint64_t seed) { const EnergyBalance e = global(room, seed); return e.absorbed / e.emitted; })};
+                         [&](std::uint64_t seed) {
+                             const EnergyBalance e = global(glassScene, seed);
+                             return e.escaped / e.emitted;
+                         }),
+            measureSeeds(context, "share absorbed in a closed room", 1.0, 1e-4, 0.02, [&](std::uint64_t seed) {
+                const EnergyBalance e = global(room, seed);
+                return e.absorbed / e.emitted;
+            })};
 }
 
 }  // namespace
 
 void addEnergy(Cases& cases) {
-    cases.push_back({"energy-of-photon-passes", CheckGroup::Energy,
-                     "emitted = escaped + absorbed + stored + left to others + roulette + dropped; lamps emit pi A L and 4 pi I",
-                     "energy conservation", true, balance});
+    cases.push_back(
+        {"energy-of-photon-passes", CheckGroup::Energy,
+         "emitted = escaped + absorbed + stored + left to others + roulette + dropped; lamps emit pi A L and 4 pi I",
+         "energy conservation", true, balance});
     cases.push_back({"energy-shares", CheckGroup::Energy, "clear glass takes nothing, a closed room everything",
                      "energy conservation", true, shares});
 }

@@ -28,13 +28,13 @@ std::vector<Finding> convexInSky(const CheckContext& context) {
     EnvironmentDescription sky;
     sky.constant = Rgb(2.0F);
     return measureByAll(context, {b.description(),
-                             sky,
-                             0.7 * 2.0,
-                             1.0,
-                             "radiance rho L",
-                             {{Method::Path, 64, 0.0}, {Method::Photon, 32, 0.005}},
-                             16,
-                             smallSettings()});
+                                  sky,
+                                  0.7 * 2.0,
+                                  1.0,
+                                  "radiance rho L",
+                                  {{Method::Path, 64, 0.0}, {Method::Photon, 32, 0.005}},
+                                  16,
+                                  smallSettings()});
 }
 
 std::vector<Finding> furnace(const CheckContext& context) {

@@ -182,7 +182,8 @@ void addGeometryExtremes(Cases& cases) {
     add("extreme-coplanar-faces", "two floors in one plane show one of the two", true, coplanarFaces);
     add("extreme-coincident-glass", "two touching slabs of one glass are one slab", true, coincidentGlass);
     add("extreme-thin-gap", "a gap of 1e-4 m between slabs of 6 m is air", true, thinGap);
-    add("extreme-broken-glass", "glass that is open, doubled, inside out or no manifold ends finite", true, brokenGlass);
+    add("extreme-broken-glass", "glass that is open, doubled, inside out or no manifold ends finite", true,
+        brokenGlass);
 }
 
 }  // namespace pellucid::check

@@ -189,7 +189,8 @@ void addLampExtremes(Cases& cases) {
     add("extreme-lamp-of-no-area", "emissive triangles without area are no lamps", "invariance", true, zeroArea);
     add("extreme-tiny-beside-huge-lamp", "1 mm of radiance 1e9 beside 10 m of 0.1", "[Lambert1760]", true,
         tinyBesideHuge);
-    add("extreme-lamp-touching-ceiling", "a lamp 1e-5 under a ceiling, behind the camera", "[Lambert1760]", false, touchingWall);
+    add("extreme-lamp-touching-ceiling", "a lamp 1e-5 under a ceiling, behind the camera", "[Lambert1760]", false,
+        touchingWall);
     add("extreme-ten-thousand-lights", "sum I cos / d^2 over 10,000 point lights", "inverse square law", true,
         tenThousandLights);
     add("extreme-burning-texel", "one texel nine orders brighter than the rest", "integral of the bilinear map", true,

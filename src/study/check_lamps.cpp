@@ -27,13 +27,13 @@ constexpr double kRho = 0.5, kPatch = 0.2;
 [[nodiscard]] std::vector<Finding> irradiance(const CheckContext& context, SceneBuilder& b, double expected,
                                               const Settings& settings = smallSettings()) {
     return measureByAll(context, {b.description(),
-                             {},
-                             expected,
-                             kPiD / kRho,
-                             "irradiance",
-                             {{Method::Path, 64, 0.0, 0.012}, {Method::Photon, 64, 0.005, 0.02}},
-                             16,
-                             settings});
+                                  {},
+                                  expected,
+                                  kPiD / kRho,
+                                  "irradiance",
+                                  {{Method::Path, 64, 0.0, 0.012}, {Method::Photon, 64, 0.005, 0.02}},
+                                  16,
+                                  settings});
 }
 
 /// A polyhedron of area A shows on average the silhouette of a sphere of that area (Cauchy): its effective radius.

@@ -87,8 +87,10 @@ std::vector<Finding> albedo1(const CheckContext& context) {
     std::vector<Finding> all;
     for (const Method method : {Method::Path, Method::Photon}) {
         const RenderResult r = renderOnce(context, scene, {method, 2}, settings, 4, context.seed);
-        const bool told = std::ranges::any_of(r.record.blindSpots, [](const std::string& text) { return text.starts_with("endless"); });
-        all.push_back(exact(method == Method::Path ? "says that there is no answer, path" : "the same, photon", 1.0, told ? 1.0 : 0.0, 0.0));
+        const bool told = std::ranges::any_of(r.record.blindSpots,
+                                              [](const std::string& text) { return text.starts_with("endless"); });
+        all.push_back(exact(method == Method::Path ? "says that there is no answer, path" : "the same, photon", 1.0,
+                            told ? 1.0 : 0.0, 0.0));
         const double mean = meanOf(r.image);
         all.push_back(exact(method == Method::Path ? "ends finite and lit, path" : "ends finite and lit, photon", 1.0,
                             std::isfinite(mean) && mean > 0.0 && r.record.nonfinite.count == 0 ? 1.0 : 0.0, 0.0));
@@ -181,7 +183,8 @@ void addMaterialExtremes(Cases& cases) {
     };
     add("extreme-albedo", "closed rooms: Le / (1 - rho) up to 0.99", "Neumann series", false, albedo);
     add("extreme-albedo-0.999", "a closed room of 1000 bounces", "Neumann series", false, albedo999);
-    add("extreme-albedo-1", "a closed room that absorbs nothing ends, and says that it has no answer", "termination", false, albedo1);
+    add("extreme-albedo-1", "a closed room that absorbs nothing ends, and says that it has no answer", "termination",
+        false, albedo1);
     add("extreme-ior", "clear glass in a constant sky is invisible at any ior", "white furnace", true, indices);
     add("extreme-rough-metal", "metal in a constant sky loses little, gains nothing", "white furnace, [Heitz2014]",
         false, roughMetal);

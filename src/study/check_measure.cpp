@@ -113,7 +113,8 @@ std::vector<Finding> measure(const CheckContext& context, Rendered what) {
 }
 
 std::vector<Finding> measureByAll(const CheckContext& context, Rendered what) {
-    const auto unbiased = std::ranges::find_if(what.by, [](const By& by) { return by.method == Method::Path || by.method == Method::Light; });
+    const auto unbiased = std::ranges::find_if(
+        what.by, [](const By& by) { return by.method == Method::Path || by.method == Method::Light; });
     if (unbiased != what.by.end()) {
         By twin = *unbiased;
         twin.samples = std::max(4U, twin.samples / 4);

@@ -133,7 +133,14 @@ std::vector<Finding> recordsInCorners(const CheckContext& context) {
         b.box({-0.5, -0.3, -1.0 + 1e-4}, {-5e-5, 0.3, -0.4}, wall);
         b.box({5e-5, -0.3, -1.0 + 1e-4}, {0.5, 0.3, -0.4}, wall);
         b.perspective(eye, target, fov);
-        return measure(context, {b.description(), {}, 2.0, 1.0, quantity, {{Method::Path, 64, 0.0}, {Method::Photon, 8, 0.02, 0.05}}, 16, smallSettings()});
+        return measure(context, {b.description(),
+                                 {},
+                                 2.0,
+                                 1.0,
+                                 quantity,
+                                 {{Method::Path, 64, 0.0}, {Method::Photon, 8, 0.02, 0.05}},
+                                 16,
+                                 smallSettings()});
     };
     std::vector<Finding> all = room({0.5, 0.5, 0.5}, glm::dvec3(1.0), 0.3, "radiance in a corner");
     const std::vector<Finding> edge = room({0.7, 0.0, 0.7}, {1.0, 0.05, 1.0}, 0.3, "radiance along an edge");

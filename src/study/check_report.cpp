@@ -107,8 +107,8 @@ std::string checkMarkdown(const CheckReport& report) {
                         report.results.size(), report.failures());
     for (const auto& [group, title] :
          {std::pair(CheckGroup::ClosedForm, "Closed forms"), std::pair(CheckGroup::Kernel, "Kernel statistics"),
-          std::pair(CheckGroup::MonteCarlo, "Monte Carlo"),
-          std::pair(CheckGroup::Energy, "Energy"), std::pair(CheckGroup::Extreme, "Extremes")}) {
+          std::pair(CheckGroup::MonteCarlo, "Monte Carlo"), std::pair(CheckGroup::Energy, "Energy"),
+          std::pair(CheckGroup::Extreme, "Extremes")}) {
         page += fmt::format("\n## {}\n", title);
         addGroup(page, report, group);
     }

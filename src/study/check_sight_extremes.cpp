@@ -24,7 +24,8 @@ std::vector<Finding> twelveOrders(const CheckContext& context) {
     constexpr int kStripes = 13;
     SceneBuilder b;
     for (int i = 0; i < kStripes; ++i)
-        b.quad({static_cast<double>(i), 0, 0}, {1, 0, 0}, {0, kStripes, 0}, lamp(static_cast<float>(std::pow(10.0, i - 6))));
+        b.quad({static_cast<double>(i), 0, 0}, {1, 0, 0}, {0, kStripes, 0},
+               lamp(static_cast<float>(std::pow(10.0, i - 6))));
     b.view({0.5 * kStripes, 0.5 * kStripes, 0}, kUp, kStripes, 5.0);
     const Scene scene = makeScene(context, b.description());
     const Camera camera = scene.camera("", kStripes, kStripes);
@@ -35,13 +36,16 @@ std::vector<Finding> twelveOrders(const CheckContext& context) {
         for (int x = 0; x < kStripes; ++x) {
             const CameraRay ray = camera.ray({static_cast<float>(x) + 0.5F, 6.5F}, {0.5F, 0.5F});
             const auto hit = scene.intersect(ray.ray, 0.5F);
-            const double expected = hit ? static_cast<double>(scene.description().materials[hit->point.material].emission.g) : 0.0;
+            const double expected =
+                hit ? static_cast<double>(scene.description().materials[hit->point.material].emission.g) : 0.0;
             double mean = 0.0;
             for (int y = 0; y < kStripes; ++y)
-                mean += static_cast<double>(image.at(static_cast<std::size_t>(y * kStripes + x), image.channel("G"))) / kStripes;
+                mean += static_cast<double>(image.at(static_cast<std::size_t>(y * kStripes + x), image.channel("G"))) /
+                        kStripes;
             worst = std::max(worst, std::fabs(mean / expected - 1.0));
         }
-        all.push_back(exact(method == Method::Path ? "largest relative error of a stripe, path" : "the same, photon", 0.0, worst, 1e-6));
+        all.push_back(exact(method == Method::Path ? "largest relative error of a stripe, path" : "the same, photon",
+                            0.0, worst, 1e-6));
     }
     return all;
 }
@@ -55,18 +59,21 @@ std::vector<Finding> seenInMirror(const CheckContext& context) {
     b.quad({-0.9, -0.7, 0.8}, {0, 1.4, 0}, {0.7, 0, 0}, lamp(5.0F));
     b.quad({-0.35, -0.4, 0.1}, {0.475, 0, 0}, {0, 0.8, 0}, lambert(0.0F));
     b.view(glm::dvec3(0.0), kUp, kPatch, 0.05);
-    const std::array<glm::dvec3, 4> image{glm::dvec3(2.9, -0.7, 0.8), {2.9, 0.7, 0.8}, {2.2, 0.7, 0.8}, {2.2, -0.7, 0.8}};
+    const std::array<glm::dvec3, 4> image{
+        glm::dvec3(2.9, -0.7, 0.8), {2.9, 0.7, 0.8}, {2.2, 0.7, 0.8}, {2.2, -0.7, 0.8}};
     const double expected = 5.0 * meanOverSquare([&](double u, double v) {
-        return polygonIrradiance({kPatch * (u - 0.5), kPatch * (v - 0.5), 0.0}, kUp, image);
-    });
-    return measure(context, {b.description(),
-                             {},
-                             expected,
-                             kPiD / kRho,
-                             "irradiance",
-                             {{Method::Path, 512, 0.0, 0.2}, {Method::Photon, 16, 0.01, 0.06}, {Method::Light, 32, 0.0, 0.2, "caustic"}},
-                             16,
-                             smallSettings()});
+                                return polygonIrradiance({kPatch * (u - 0.5), kPatch * (v - 0.5), 0.0}, kUp, image);
+                            });
+    return measure(
+        context,
+        {b.description(),
+         {},
+         expected,
+         kPiD / kRho,
+         "irradiance",
+         {{Method::Path, 512, 0.0, 0.2}, {Method::Photon, 16, 0.01, 0.06}, {Method::Light, 32, 0.0, 0.2, "caustic"}},
+         16,
+         smallSettings()});
 }
 
 /// Down a rod of 40 times its width at 2 degrees: the sides are met at 88.7 degrees, and keep all.
@@ -119,10 +126,12 @@ void addSightExtremes(Cases& cases) {
         cases.push_back({name, CheckGroup::Extreme, guards, source, quick, run});
     };
     add("extreme-twelve-orders", "radiances from 1e-6 to 1e6 in one image", "emission as given", true, twelveOrders);
-    add("extreme-lamp-in-mirror-only", "a lamp that is seen in a mirror alone", "[Lambert1760], image source", false, seenInMirror);
-    add("extreme-grazing-total-reflection", "a light pipe whose sides are met at 88.7 degrees", "[Hecht2002, sec. 5.6]", true,
-        grazingTotalReflection);
-    add("extreme-ten-thousand-bounces", "a lamp behind ten thousand reflections", "energy conservation", false, tenThousandBounces);
+    add("extreme-lamp-in-mirror-only", "a lamp that is seen in a mirror alone", "[Lambert1760], image source", false,
+        seenInMirror);
+    add("extreme-grazing-total-reflection", "a light pipe whose sides are met at 88.7 degrees", "[Hecht2002, sec. 5.6]",
+        true, grazingTotalReflection);
+    add("extreme-ten-thousand-bounces", "a lamp behind ten thousand reflections", "energy conservation", false,
+        tenThousandBounces);
 }
 
 }  // namespace pellucid::check

@@ -86,8 +86,9 @@ std::vector<Finding> hugeEnvironment(const CheckContext& context) {
 }  // namespace
 
 void addSizeExtremes(Cases& cases) {
-    cases.push_back({"extreme-million-instances", CheckGroup::Extreme, "I cos / d^2 on a floor of 1e6 instances, 1e7 triangles",
-                     "inverse square law", false, millionInstances});
+    cases.push_back({"extreme-million-instances", CheckGroup::Extreme,
+                     "I cos / d^2 on a floor of 1e6 instances, 1e7 triangles", "inverse square law", false,
+                     millionInstances});
     cases.push_back({"extreme-huge-environment", CheckGroup::Extreme, "L = 1 + a.w from a map of 16384 x 8192 texels",
                      "spherical harmonics, [RamamoorthiHanrahan2001]", false, hugeEnvironment});
 }

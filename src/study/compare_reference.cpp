@@ -164,9 +164,8 @@ CompareReference makeReference(const CompareRequest& request, const SceneSource&
         const double left = limit - state.seconds;
         if (reference.goodEnough || left < 0.01 * limit || progress.stopAsked()) break;
         const double more = std::min(left, std::max(state.seconds, request.times.back()));
-        const RenderResult result =
-            renderMore(request, scenes(request.settings), runs, store, more, workers,
-                       referenceProgress(progress, state, best, limit, more), log);
+        const RenderResult result = renderMore(request, scenes(request.settings), runs, store, more, workers,
+                                               referenceProgress(progress, state, best, limit, more), log);
         reference.image = result.image;
         state.seconds += result.record.seconds;
         state.error = result.record.errorEstimate;

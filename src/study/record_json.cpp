@@ -31,15 +31,20 @@ constexpr std::size_t kMostLinks = 256, kMostLinkRows = 12;
 [[nodiscard]] Json linksJson(const std::vector<CausticLink>& links) {
     Json json = Json::array();
     for (const CausticLink& l : shortened(links, kMostLinks))
-        json.push_back({{"lamp", l.lamp}, {"caster", l.caster}, {"emitted", l.emitted}, {"hit", l.hit},
-                        {"deposited", l.deposited}, {"useful", l.useful}, {"reason", l.reason}});
+        json.push_back({{"lamp", l.lamp},
+                        {"caster", l.caster},
+                        {"emitted", l.emitted},
+                        {"hit", l.hit},
+                        {"deposited", l.deposited},
+                        {"useful", l.useful},
+                        {"reason", l.reason}});
     return json;
 }
 
 /// Watts; `residual` is the share of the emitted power that no sink accounts for: rounding, or a defect.
 [[nodiscard]] Json energyJson(const EnergyBalance& e) {
-    return {{"emitted", e.emitted},   {"escaped", e.escaped}, {"absorbed", e.absorbed}, {"stored", e.stored},
-            {"left_to_others", e.left}, {"roulette", e.roulette}, {"dropped", e.dropped}, {"residual", e.residual()}};
+    return {{"emitted", e.emitted},     {"escaped", e.escaped},   {"absorbed", e.absorbed}, {"stored", e.stored},
+            {"left_to_others", e.left}, {"roulette", e.roulette}, {"dropped", e.dropped},   {"residual", e.residual()}};
 }
 
 [[nodiscard]] Json stagesJson(const std::vector<StageRecord>& stages) {
@@ -86,7 +91,8 @@ constexpr std::size_t kMostLinks = 256, kMostLinkRows = 12;
 [[nodiscard]] std::string linksText(const std::vector<CausticLink>& links) {
     TextTable table({"lamp", "caster", "pilot paths", "hit it", "left photons", "in view", "no caustic, because"});
     for (const CausticLink& l : shortened(links, kMostLinkRows))
-        table.add({printable(l.lamp), printable(l.caster), countText(l.emitted), countText(l.hit), countText(l.deposited), countText(l.useful), l.reason});
+        table.add({printable(l.lamp), printable(l.caster), countText(l.emitted), countText(l.hit),
+                   countText(l.deposited), countText(l.useful), l.reason});
     return table.text();
 }
 

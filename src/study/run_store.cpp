@@ -43,15 +43,13 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] RunMetrics metricsFrom(const Json& json) {
     RunMetrics metrics;
     metrics.referenceHash = json.at("reference_hash").get<std::string>();
-    metrics.whole = {numberOrInfinity(json.at("rmse")),
-                     numberOrInfinity(json.at("relmse")),
-                     numberOrInfinity(json.at("relmse_trimmed")),
-                     numberOrInfinity(json.at("smape")),
-                     numberOrInfinity(json.at("flip")),
-                     numberOrInfinity(json.at("bias")),
+    metrics.whole = {numberOrInfinity(json.at("rmse")),           numberOrInfinity(json.at("relmse")),
+                     numberOrInfinity(json.at("relmse_trimmed")), numberOrInfinity(json.at("smape")),
+                     numberOrInfinity(json.at("flip")),           numberOrInfinity(json.at("bias")),
                      json.at("nonfinite").get<std::size_t>()};
     if (json.contains("classes"))
-        for (const auto& [name, value] : json.at("classes").items()) metrics.classRelmse[name] = numberOrInfinity(value);
+        for (const auto& [name, value] : json.at("classes").items())
+            metrics.classRelmse[name] = numberOrInfinity(value);
     return metrics;
 }
 

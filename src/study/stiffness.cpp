@@ -37,10 +37,12 @@ struct Known {
     std::vector<double> picture;
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) {
-            const CameraRay ray = camera.ray({static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F}, {0.5F, 0.5F});
+            const CameraRay ray =
+                camera.ray({static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F}, {0.5F, 0.5F});
             const auto hit = scene.intersect(ray.ray, 0.5F);
-            const glm::dvec3 at = hit ? glm::dvec3(hit->point.position) / scene.normalisation().scale() + scene.normalisation().centre
-                                      : glm::dvec3(0.0);
+            const glm::dvec3 at =
+                hit ? glm::dvec3(hit->point.position) / scene.normalisation().scale() + scene.normalisation().centre
+                    : glm::dvec3(0.0);
             picture.push_back(known.radiance(at));
         }
     return picture;
@@ -52,8 +54,9 @@ struct Known {
     return sum;
 }
 
-[[nodiscard]] SweepFigures figuresOf(const CheckContext& context, const Scene& scene, const std::vector<double>& picture,
-                                     const By& by, const Settings& settings, std::uint64_t key) {
+[[nodiscard]] SweepFigures figuresOf(const CheckContext& context, const Scene& scene,
+                                     const std::vector<double>& picture, const By& by, const Settings& settings,
+                                     std::uint64_t key) {
     SweepFigures figures;
     std::array<double, kSweepSeeds> bias{};
     double expected = 0.0;
@@ -68,13 +71,15 @@ struct Known {
         }
         bias[k] = mean / expected - 1.0;
         figures.seconds += result.record.seconds / static_cast<double>(bias.size());
-        for (const StageRecord& s : result.record.stages) figures.rays += static_cast<double>(s.rays) / static_cast<double>(bias.size());
+        for (const StageRecord& s : result.record.stages)
+            figures.rays += static_cast<double>(s.rays) / static_cast<double>(bias.size());
     }
     figures.error = std::sqrt(figures.error);
     double square = 0.0;
     for (const double b : bias) figures.bias += b / kSweepSeeds;
     for (const double b : bias) square += (b - figures.bias) * (b - figures.bias);
-    figures.interval = studentQuantile(0.975, kSweepSeeds - 1) * std::sqrt(square / (kSweepSeeds * (kSweepSeeds - 1.0)));
+    figures.interval =
+        studentQuantile(0.975, kSweepSeeds - 1) * std::sqrt(square / (kSweepSeeds * (kSweepSeeds - 1.0)));
     return figures;
 }
 
@@ -99,8 +104,10 @@ struct Known {
     b.quad({0.2, -half, 0.6 - half}, {0, 2.0 * half, 0}, {0, 0, 2.0 * half}, lamp(static_cast<float>(radiance)));
     b.view(glm::dvec3(-0.3, 0, 0), kUp, 0.4, 0.2);
     return {b.description(), [=](const glm::dvec3& p) {
-                const std::array<glm::dvec3, 4> image{glm::dvec3(1.8, -half, 0.6 - half), {1.8, half, 0.6 - half},
-                                                      {1.8, half, 0.6 + half}, {1.8, -half, 0.6 + half}};
+                const std::array<glm::dvec3, 4> image{glm::dvec3(1.8, -half, 0.6 - half),
+                                                      {1.8, half, 0.6 - half},
+                                                      {1.8, half, 0.6 + half},
+                                                      {1.8, -half, 0.6 + half}};
                 return kRho / kPiD * radiance * polygonIrradiance(p, kUp, image);
             }};
 }
@@ -174,28 +181,33 @@ struct RoughMirror {
     SceneBuilder b;
     b.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, lambert(static_cast<float>(kRho)));
     b.quad({1, -1, 0}, {0, 0, 2}, {0, 2, 0}, mirror(1.0F, static_cast<float>(value)));
-    b.quad({0.2, -m.half, 0.6 - m.half}, {0, 2.0 * m.half, 0}, {0, 0, 2.0 * m.half}, lamp(static_cast<float>(m.radiance)));
+    b.quad({0.2, -m.half, 0.6 - m.half}, {0, 2.0 * m.half, 0}, {0, 0, 2.0 * m.half},
+           lamp(static_cast<float>(m.radiance)));
     b.view(glm::dvec3(-0.3, 0, 0), kUp, 0.4, 0.2);
     Known known;
     known.scene = b.description();
     known.radiance = [m](const glm::dvec3& p) {
         if (m.alpha < 1e-4) {
-            const std::array<glm::dvec3, 4> image{glm::dvec3(1.8, -m.half, 0.6 - m.half), {1.8, m.half, 0.6 - m.half},
-                                                  {1.8, m.half, 0.6 + m.half}, {1.8, -m.half, 0.6 + m.half}};
+            const std::array<glm::dvec3, 4> image{glm::dvec3(1.8, -m.half, 0.6 - m.half),
+                                                  {1.8, m.half, 0.6 - m.half},
+                                                  {1.8, m.half, 0.6 + m.half},
+                                                  {1.8, -m.half, 0.6 + m.half}};
             return kRho / kPiD * m.radiance * polygonIrradiance(p, kUp, image);
         }
         // Around the mirror image's place, where the integrand is: the narrower, the smoother the metal.
         constexpr int kSteps = 32, kLamp = 3;
         double sum = 0.0;
         for (int i = 0; i < kLamp * kLamp; ++i) {
-            const glm::dvec3 light(0.2, m.half * ((i % kLamp + 0.5) * 2.0 / kLamp - 1.0), 0.6 + m.half * ((i / kLamp + 0.5) * 2.0 / kLamp - 1.0));
+            const glm::dvec3 light(0.2, m.half * ((i % kLamp + 0.5) * 2.0 / kLamp - 1.0),
+                                   0.6 + m.half * ((i / kLamp + 0.5) * 2.0 / kLamp - 1.0));
             const double t = (1.0 - p.x) / (1.8 - p.x);
             const glm::dvec2 spot(p.y + t * (light.y - p.y), p.z + t * (light.z - p.z));
             for (int a = 0; a < 2 * kSteps; ++a)
                 for (int r = 0; r < kSteps; ++r) {
                     // Polar around the spot; radius s(u) spreads from alpha's size to the whole mirror.
                     const double u = (r + 0.5) / kSteps, w = 0.5 * m.alpha, s = w * std::sinh(u * std::asinh(3.0 / w)),
-                                 ds = std::asinh(3.0 / w) * std::sqrt(w * w + s * s) / kSteps, phi = kPiD * (a + 0.5) / kSteps;
+                                 ds = std::asinh(3.0 / w) * std::sqrt(w * w + s * s) / kSteps,
+                                 phi = kPiD * (a + 0.5) / kSteps;
                     const glm::dvec3 q(1.0, spot.x + s * std::cos(phi), spot.y + s * std::sin(phi));
                     if (std::fabs(q.y) > 1.0 || q.z < 0.0 || q.z > 2.0) continue;
                     const glm::dvec3 toLight = light - q, toFloor = p - q;
@@ -218,19 +230,48 @@ struct Dial {
 };
 
 [[nodiscard]] const std::vector<Dial>& dials() {
-    static const std::vector<Dial> list{
-        {"lamp size", "half width of the lamp, m", "A lamp of constant power faces a mirror and lights a floor over it.",
-         "irradiance of the lamp's image", "[Lambert1760]", {0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4}, lampSize},
-        {"albedo", "1 - albedo", "A closed room of uniform emission and reflectance.", "Le / (1 - rho)", "Neumann series",
-         {1.0, 0.5, 0.1, 0.03, 0.01, 0.001}, albedo},
-        {"roughness", "roughness of the mirror", "A lamp of 10 cm faces a metal mirror that is roughened.",
-         "integral over the mirror with the GGX model", "[Walter2007]", {1.0, 0.6, 0.3, 0.1, 0.03, 0.01, 1e-5}, roughness},
-        {"ior", "index of refraction - 1", "A slab of glass over a wide lamp.", "T = 2n / (n^2 + 1)", "[Hecht2002, eqs. 4.34-4.40]",
-         {3.0, 0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-6}, index},
-        {"scale", "factor on all lengths", "The lamp, the mirror and the floor in other units.", "irradiance of the lamp's image",
-         "[Lambert1760]", {1.0, 1e-6, 1e-4, 1e-2, 1e2, 1e4, 1e7}, scale},
-        {"wall gap", "thickness of the wall, m", "A room behind a wall from one that is a thousand times brighter.", "Le / (1 - rho)",
-         "Neumann series", {1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5}, wallGap}};
+    static const std::vector<Dial> list{{"lamp size",
+                                         "half width of the lamp, m",
+                                         "A lamp of constant power faces a mirror and lights a floor over it.",
+                                         "irradiance of the lamp's image",
+                                         "[Lambert1760]",
+                                         {0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4},
+                                         lampSize},
+                                        {"albedo",
+                                         "1 - albedo",
+                                         "A closed room of uniform emission and reflectance.",
+                                         "Le / (1 - rho)",
+                                         "Neumann series",
+                                         {1.0, 0.5, 0.1, 0.03, 0.01, 0.001},
+                                         albedo},
+                                        {"roughness",
+                                         "roughness of the mirror",
+                                         "A lamp of 10 cm faces a metal mirror that is roughened.",
+                                         "integral over the mirror with the GGX model",
+                                         "[Walter2007]",
+                                         {1.0, 0.6, 0.3, 0.1, 0.03, 0.01, 1e-5},
+                                         roughness},
+                                        {"ior",
+                                         "index of refraction - 1",
+                                         "A slab of glass over a wide lamp.",
+                                         "T = 2n / (n^2 + 1)",
+                                         "[Hecht2002, eqs. 4.34-4.40]",
+                                         {3.0, 0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-6},
+                                         index},
+                                        {"scale",
+                                         "factor on all lengths",
+                                         "The lamp, the mirror and the floor in other units.",
+                                         "irradiance of the lamp's image",
+                                         "[Lambert1760]",
+                                         {1.0, 1e-6, 1e-4, 1e-2, 1e2, 1e4, 1e7},
+                                         scale},
+                                        {"wall gap",
+                                         "thickness of the wall, m",
+                                         "A room behind a wall from one that is a thousand times brighter.",
+                                         "Le / (1 - rho)",
+                                         "Neumann series",
+                                         {1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5},
+                                         wallGap}};
     return list;
 }
 
@@ -250,7 +291,8 @@ std::vector<std::string_view> sweepNames() {
     return names;
 }
 
-std::vector<Sweep> runSweeps(const CheckContext& context, std::string_view filter, const std::function<void(const Sweep&)>& done) {
+std::vector<Sweep> runSweeps(const CheckContext& context, std::string_view filter,
+                             const std::function<void(const Sweep&)>& done) {
     std::vector<Sweep> sweeps;
     for (const Dial& dial : dials()) {
         if (std::string_view(dial.name).find(filter) == std::string_view::npos) continue;

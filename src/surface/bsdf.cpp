@@ -148,7 +148,8 @@ DeltaBranches Bsdf::deltaBranches(const glm::vec3& wo, TransportMode mode) const
         const glm::vec3 world = frame_.toWorld(direction.wi);
         const Rgb weight = direction.weight * (lobe.weight * chance);
         if (isBlack(weight) || !sameSide(direction.wi, world)) return;
-        found.branch[static_cast<std::size_t>(found.count++)] = {world, weight, 0.0F, lobe.kind, true, direction.wi.z < 0.0F, direction.etaScale};
+        found.branch[static_cast<std::size_t>(found.count++)] = {
+            world, weight, 0.0F, lobe.kind, true, direction.wi.z < 0.0F, direction.etaScale};
     };
     for (int i = 0; i < count_; ++i) {
         const Lobe& lobe = lobes_[static_cast<std::size_t>(i)];
@@ -174,7 +175,8 @@ struct Bsdf::BlindShare {
 
     [[nodiscard]] float pdf(float z, Directions directions) const noexcept {
         if (z < 0.0F && !bothSides) return 0.0F;
-        const float side = directions == Directions::Cosine ? pdfSolidAngleCosineHemisphere({0.0F, 0.0F, std::fabs(z)}) : 0.5F * kInvPi;
+        const float side = directions == Directions::Cosine ? pdfSolidAngleCosineHemisphere({0.0F, 0.0F, std::fabs(z)})
+                                                            : 0.5F * kInvPi;
         return probability * side * (bothSides ? 0.5F : 1.0F);
     }
 };

@@ -21,12 +21,17 @@ enum VertexDimension : std::uint64_t { kCoin, kConnectChoice, kConnectPoint, kSc
 
 }  // namespace
 
-Bidirectional::Bidirectional(const Scene& scene, const Camera& camera, const TransportOptions& options, std::uint32_t lightPaths) noexcept
-    : scene_(scene), camera_(camera), left_(options.left), rules_{options.powerHeuristic, options.rouletteThreshold, options.maxDepth, lightPaths},
-      eye_(scene, rules_, Subpath::From::Eye), light_(scene, rules_, Subpath::From::Light) {}
+Bidirectional::Bidirectional(const Scene& scene, const Camera& camera, const TransportOptions& options,
+                             std::uint32_t lightPaths) noexcept
+    : scene_(scene),
+      camera_(camera),
+      left_(options.left),
+      rules_{options.powerHeuristic, options.rouletteThreshold, options.maxDepth, lightPaths},
+      eye_(scene, rules_, Subpath::From::Eye),
+      light_(scene, rules_, Subpath::From::Light) {}
 
-LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sampler& light, std::vector<LightSplat>& splats, FirstHit* first,
-                                      StringSums* strings) noexcept {
+LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sampler& light,
+                                      std::vector<LightSplat>& splats, FirstHit* first, StringSums* strings) noexcept {
     LayeredRadiance sum;
     sum.strings = strings;
     traceLight(light, splats);
@@ -40,7 +45,8 @@ LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sample
             return sum;
         }
         const PathVertex& z = eye_.last();
-        if (first != nullptr && eye_.vertices().size() == 1) *first = {z.bsdf.diffuse().reflectance, z.bsdf.shadingNormal(), z.hit.distance, 0.0F};
+        if (first != nullptr && eye_.vertices().size() == 1)
+            *first = {z.bsdf.diffuse().reflectance, z.bsdf.shadingNormal(), z.hit.distance, 0.0F};
         if (!left_.has(eye_.string())) sum.add(eye_.string(), eye_.emitted());
         eye.setDimension(dimension + kConnectChoice);
         const float choose = eye.next1D();
@@ -67,7 +73,8 @@ void Bidirectional::traceLight(Sampler& sampler, std::vector<LightSplat>& splats
         sampler.setDimension(dimension + kConnectPoint);
         const glm::vec2 lens = sampler.next2D();
         const std::size_t depth = light_.vertices().size();
-        if (light_.last().bsdf.connects() && (rules_.maxDepth == 0 || depth <= static_cast<std::size_t>(rules_.maxDepth)))
+        if (light_.last().bsdf.connects() &&
+            (rules_.maxDepth == 0 || depth <= static_cast<std::size_t>(rules_.maxDepth)))
             splat(light_.last(), depth - 1, lens, splats);
         sampler.setDimension(dimension + kScatter);
         if (!light_.scatter(sampler)) return;
@@ -75,12 +82,14 @@ void Bidirectional::traceLight(Sampler& sampler, std::vector<LightSplat>& splats
 }
 
 /// Beer's law and alpha along a connection.
-Rgb Bidirectional::transmittance(const PathVertex& from, const glm::vec3& direction, const Ray& shadow, float distance) noexcept {
+Rgb Bidirectional::transmittance(const PathVertex& from, const glm::vec3& direction, const Ray& shadow,
+                                 float distance) noexcept {
     ++rays_;
     const float visible = shadow.tMax > 0.0F ? scene_.visibility(shadow) : 1.0F;
     if (visible <= 0.0F) return Rgb(0.0F);
     const bool through = glm::dot(direction, from.bsdf.geometricNormal()) < 0.0F;
-    return visible * medium::transmittance(medium::afterHit(scene_, from.hit.point, from.bsdf, from.absorption, through), distance);
+    return visible * medium::transmittance(
+                         medium::afterHit(scene_, from.hit.point, from.bsdf, from.absorption, through), distance);
 }
 
 /// `path` and then the light path's first `vertices` ones, the last of them first.
@@ -90,25 +99,30 @@ PathString Bidirectional::withLightEnd(PathString path, std::size_t vertices) co
 }
 
 /// Light path to lens. The eye's density of the same path: its one sample a pixel over the pixel's area.
-void Bidirectional::splat(const PathVertex& y, std::size_t index, const glm::vec2& lens, std::vector<LightSplat>& splats) noexcept {
+void Bidirectional::splat(const PathVertex& y, std::size_t index, const glm::vec2& lens,
+                          std::vector<LightSplat>& splats) noexcept {
     const auto film = camera_.project(y.hit.point.position, lens);
     if (!film || !(film->importance > 0.0F)) return;
     const int px = static_cast<int>(film->position.x), py = static_cast<int>(film->position.y);
     if (px < 0 || py < 0 || px >= camera_.width() || py >= camera_.height()) return;
     const auto value = light_.valueTowards(y, film->direction);
     if (!value) return;
-    const Ray shadow{offsetOrigin(y.hit.point.position, sideOf(y, film->direction)), film->direction, shadowLength(film->distance)};
+    const Ray shadow{offsetOrigin(y.hit.point.position, sideOf(y, film->direction)), film->direction,
+                     shadowLength(film->distance)};
     const Rgb visible = transmittance(y, film->direction, shadow, film->distance);
     if (isBlack(visible)) return;
     const double arrival = static_cast<double>(film->importance) * geometricCosine(y, film->direction);
-    const double other = rules_.power(arrival / rules_.lightPaths) * (y.mis.connect + y.mis.onward * rules_.power(static_cast<double>(value->pdfBack)));
+    const double other = rules_.power(arrival / rules_.lightPaths) *
+                         (y.mis.connect + y.mis.onward * rules_.power(static_cast<double>(value->pdfBack)));
     const auto scale = static_cast<float>(arrival / (rules_.lightPaths * (1.0 + other)));
     for (std::size_t k = 0; k < 3; ++k) {
         if (isBlack(value->byKind[k])) continue;
         PathString path;
         path.pass(static_cast<LobeKinds>(1U << k));
         path = withLightEnd(path, index);
-        if (!left_.has(path)) splats.push_back({static_cast<std::uint32_t>(py * camera_.width() + px), y.throughput * value->byKind[k] * visible * scale, path});
+        if (!left_.has(path))
+            splats.push_back({static_cast<std::uint32_t>(py * camera_.width() + px),
+                              y.throughput * value->byKind[k] * visible * scale, path});
     }
 }
 
@@ -126,11 +140,13 @@ void Bidirectional::addDirect(const PathVertex& z, float choose, const glm::vec2
     const double hit = light->delta ? 0.0 : rules_.power(static_cast<double>(value->pdfOnward) / direct);
     // Emission towards here over next-event estimation, both per area at the light (a point's is discrete) and here.
     const EmissionPdf emission = lights.pdfEmission(light->light, -light->wi);
-    double emit = static_cast<double>(emission.position) * static_cast<double>(emission.direction) * geometricCosine(z, light->wi) / direct;
+    double emit = static_cast<double>(emission.position) * static_cast<double>(emission.direction) *
+                  geometricCosine(z, light->wi) / direct;
     const bool punctual = light->delta && std::isfinite(light->distance);
     const auto distance = static_cast<double>(light->distance);
     emit /= punctual ? distance * distance : static_cast<double>(lights.cosineAt(light->light, light->wi));
-    const double others = hit + rules_.power(emit) * (z.mis.connect + z.mis.onward * rules_.power(static_cast<double>(value->pdfBack)));
+    const double others =
+        hit + rules_.power(emit) * (z.mis.connect + z.mis.onward * rules_.power(static_cast<double>(value->pdfBack)));
     const Rgb arriving = z.throughput * light->radiance * visible * static_cast<float>(1.0 / (direct * (1.0 + others)));
     for (std::size_t k = 0; k < 3; ++k) {
         if (isBlack(value->byKind[k])) continue;
@@ -158,10 +174,13 @@ void Bidirectional::connect(const PathVertex& z, std::size_t lightVertex, Layere
     const Ray shadow{origin, length > 0.0F ? (target - origin) / length : direction, shadowLength(length)};
     const Rgb visible = transmittance(z, direction, shadow, distance);
     if (isBlack(visible)) return;
-    const double cosEye = geometricCosine(z, direction), cosLight = geometricCosine(y, direction), d2 = static_cast<double>(distance2);
-    const double toLight = static_cast<double>(atEye->pdfOnward) * cosLight / d2, toEye = static_cast<double>(atLight->pdfOnward) * cosEye / d2;
-    const double others = rules_.power(toLight) * (y.mis.connect + y.mis.onward * rules_.power(static_cast<double>(atLight->pdfBack))) +
-                          rules_.power(toEye) * (z.mis.connect + z.mis.onward * rules_.power(static_cast<double>(atEye->pdfBack)));
+    const double cosEye = geometricCosine(z, direction), cosLight = geometricCosine(y, direction),
+                 d2 = static_cast<double>(distance2);
+    const double toLight = static_cast<double>(atEye->pdfOnward) * cosLight / d2,
+                 toEye = static_cast<double>(atLight->pdfOnward) * cosEye / d2;
+    const double others =
+        rules_.power(toLight) * (y.mis.connect + y.mis.onward * rules_.power(static_cast<double>(atLight->pdfBack))) +
+        rules_.power(toEye) * (z.mis.connect + z.mis.onward * rules_.power(static_cast<double>(atEye->pdfBack)));
     const Rgb scale = z.throughput * y.throughput * visible * static_cast<float>(cosLight / (d2 * (1.0 + others)));
     for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t b = 0; b < 3; ++b) {

@@ -19,15 +19,21 @@ constexpr float kWouldCast = 0.5F;
 [[nodiscard]] std::vector<std::uint32_t> shining(const SceneDescription& scene, PunctualKind kind) {
     std::vector<std::uint32_t> kept;
     for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
-        if (scene.lights[i].kind == kind && isFinite(scene.lights[i].intensity) && average(scene.lights[i].intensity) > 0.0F) kept.push_back(i);
+        if (scene.lights[i].kind == kind && isFinite(scene.lights[i].intensity) &&
+            average(scene.lights[i].intensity) > 0.0F)
+            kept.push_back(i);
     return kept;
 }
 
 [[nodiscard]] bool punctual(LightKind kind, PunctualKind& as) noexcept {
-    if (kind == LightKind::Point) as = PunctualKind::Point;
-    else if (kind == LightKind::Spot) as = PunctualKind::Spot;
-    else if (kind == LightKind::Directional) as = PunctualKind::Directional;
-    else return false;
+    if (kind == LightKind::Point)
+        as = PunctualKind::Point;
+    else if (kind == LightKind::Spot)
+        as = PunctualKind::Spot;
+    else if (kind == LightKind::Directional)
+        as = PunctualKind::Directional;
+    else
+        return false;
     return true;
 }
 
@@ -52,7 +58,8 @@ void CasterTally::findLamps(const Scene& scene) {
         const Mesh& mesh = description.meshes[description.geometries[g].mesh];
         if (maxComponent(description.materials[mesh.material].emission) <= 0.0F) continue;
         for (std::uint32_t p = 0; p < mesh.triangles.size(); ++p)
-            if (const std::uint32_t light = lights.lightOf(g, p); light != Lights::kNoLight) materialOf[light] = mesh.material;
+            if (const std::uint32_t light = lights.lightOf(g, p); light != Lights::kNoLight)
+                materialOf[light] = mesh.material;
     }
     std::map<std::uint32_t, std::uint32_t> lampOfMaterial;
     std::map<LightKind, std::size_t> seen;
@@ -64,8 +71,10 @@ void CasterTally::findLamps(const Scene& scene) {
         PunctualKind kind{};
         if (lamp.kind == LightKind::Triangle) {
             lamp.source = materialOf[light];
-            const auto [known, fresh] = lampOfMaterial.try_emplace(lamp.source, static_cast<std::uint32_t>(lamps_.size()));
-            if (fresh && lamp.source != TalliedLamp::kUnknown) lamp.name = nameOr(description.materials[lamp.source].name, "material", lamp.source);
+            const auto [known, fresh] =
+                lampOfMaterial.try_emplace(lamp.source, static_cast<std::uint32_t>(lamps_.size()));
+            if (fresh && lamp.source != TalliedLamp::kUnknown)
+                lamp.name = nameOr(description.materials[lamp.source].name, "material", lamp.source);
             lampOf_[light] = known->second;
         } else {
             lampOf_[light] = static_cast<std::uint32_t>(lamps_.size());
@@ -73,7 +82,8 @@ void CasterTally::findLamps(const Scene& scene) {
                 const auto kept = shining(description, kind);
                 const std::size_t index = seen[lamp.kind]++;
                 if (index < kept.size()) lamp.source = kept[index];
-                lamp.name = nameOr(lamp.source == TalliedLamp::kUnknown ? "" : description.lights[lamp.source].name, "light", light);
+                lamp.name = nameOr(lamp.source == TalliedLamp::kUnknown ? "" : description.lights[lamp.source].name,
+                                   "light", light);
             } else {
                 lamp.name = "environment";
             }
@@ -94,10 +104,13 @@ void CasterTally::findCasters(const Scene& scene) {
             const Material& material = description.materials[m];
             const LobeKinds kinds = scene.surfaces().possibleKinds(m);
             const bool casts = (kinds & kSpecular) != kNoLobe;
-            const bool would = (kinds & kGlossy) != kNoLobe && (material.metallic >= kWouldCast || material.transmission >= kWouldCast);
+            const bool would = (kinds & kGlossy) != kNoLobe &&
+                               (material.metallic >= kWouldCast || material.transmission >= kWouldCast);
             if (!used[m] || casts != smooth || !(casts || would)) continue;
-            if (casters_.size() < kMostCasters) casters_.push_back({nameOr(material.name, "material", m), {}, casts, material.roughness});
-            else casters_.back().name = "further materials", casters_.back().smooth = casters_.back().smooth || casts;
+            if (casters_.size() < kMostCasters)
+                casters_.push_back({nameOr(material.name, "material", m), {}, casts, material.roughness});
+            else
+                casters_.back().name = "further materials", casters_.back().smooth = casters_.back().smooth || casts;
             casters_.back().materials.push_back(m);
             bits_[m] = std::uint64_t{1} << (casters_.size() - 1);
         }
@@ -111,8 +124,10 @@ void CasterTally::add(std::uint32_t light, const Path& path, int vertices, bool 
         const std::uint64_t bit = rest & (~rest + 1);
         const std::size_t at = cell(lamp, static_cast<std::size_t>(std::countr_zero(rest)));
         count(counts_[at + kHit]);
-        if ((path.deposited & bit) != 0) count(counts_[at + kDeposited]);
-        else if (escaped) count(counts_[at + kEscaped]);
+        if ((path.deposited & bit) != 0)
+            count(counts_[at + kDeposited]);
+        else if (escaped)
+            count(counts_[at + kEscaped]);
         if ((path.useful & bit) != 0) count(counts_[at + kUseful]);
     }
 }

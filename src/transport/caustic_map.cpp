@@ -13,7 +13,8 @@ constexpr float kMinNormalCosine = 0.5F;
 constexpr float kMaxPlaneDistance = 0.3F;  ///< of the radius
 
 /// Whether a photon lies on the surface of the query.
-[[nodiscard]] bool sameSurface(const Photon& p, const glm::vec3& point, const glm::vec3& normal, float radius2) noexcept {
+[[nodiscard]] bool sameSurface(const Photon& p, const glm::vec3& point, const glm::vec3& normal,
+                               float radius2) noexcept {
     if (glm::dot(p.normal, normal) < kMinNormalCosine) return false;
     const float height = glm::dot(p.position - point, normal);
     return height * height <= kMaxPlaneDistance * kMaxPlaneDistance * radius2;
@@ -33,7 +34,8 @@ struct CountFlux : WithinRadius {
     glm::vec3 point, normal;
     FluxSums sums{};
 
-    CountFlux(const PhotonList& list, const glm::vec3& p, const glm::vec3& n, float r2) : WithinRadius{r2}, photons(list), point(p), normal(n) {}
+    CountFlux(const PhotonList& list, const glm::vec3& p, const glm::vec3& n, float r2)
+        : WithinRadius{r2}, photons(list), point(p), normal(n) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
         const Photon& p = photons[index];
         if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
@@ -55,8 +57,16 @@ struct KernelSum : WithinRadius {
     float radius, photonsPerEtendue;
     int count = 0;
 
-    KernelSum(const PhotonList& list, const glm::vec3& p, const glm::vec3& ng, const glm::vec3& ns, const DiffuseLobe& l, float r, float perEtendue)
-        : WithinRadius{r * r}, photons(list), point(p), normal(ng), shadingNormal(ns), lobe(l), radius(r), photonsPerEtendue(perEtendue) {}
+    KernelSum(const PhotonList& list, const glm::vec3& p, const glm::vec3& ng, const glm::vec3& ns,
+              const DiffuseLobe& l, float r, float perEtendue)
+        : WithinRadius{r * r},
+          photons(list),
+          point(p),
+          normal(ng),
+          shadingNormal(ns),
+          lobe(l),
+          radius(r),
+          photonsPerEtendue(perEtendue) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
         const Photon& p = photons[index];
         if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
@@ -77,7 +87,8 @@ struct CausticMap::Impl {
     PhotonKernel kernel;
     std::vector<PointSite> sites;  ///< what the tree's search touches: positions only
     PointTree<PointSite> tree;
-    Impl(PhotonList list, PhotonKernel k) : photons(std::move(list)), kernel(k), sites(photons.begin(), photons.end()), tree(sites) {}
+    Impl(PhotonList list, PhotonKernel k)
+        : photons(std::move(list)), kernel(k), sites(photons.begin(), photons.end()), tree(sites) {}
 };
 
 CausticMap::CausticMap(PhotonList photons, PhotonKernel kernel) {
@@ -88,11 +99,13 @@ CausticMap::~CausticMap() = default;
 CausticMap::CausticMap(CausticMap&&) noexcept = default;
 
 template <class Shape>
-Rgb CausticMap::sum(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal, const DiffuseLobe& lobe,
-                    float radius, float* blur, float photonsPerEtendue, int* photons) const noexcept {
+Rgb CausticMap::sum(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
+                    const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue,
+                    int* photons) const noexcept {
     KernelSum<Shape> result(impl_->photons, point, geometricNormal, shadingNormal, lobe, radius, photonsPerEtendue);
     impl_->tree.search(point, result);
-    const double perArea = static_cast<double>(Shape::kScale) / (kPiD * static_cast<double>(radius) * static_cast<double>(radius));
+    const double perArea =
+        static_cast<double>(Shape::kScale) / (kPiD * static_cast<double>(radius) * static_cast<double>(radius));
     const Rgb irradiance(result.sum * perArea);
     if (blur != nullptr) *blur = 2.0F * (luminance(irradiance) - static_cast<float>(result.inner * perArea));
     if (photons != nullptr) *photons = result.count;
@@ -100,13 +113,18 @@ Rgb CausticMap::sum(const glm::vec3& point, const glm::vec3& geometricNormal, co
 }
 
 Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                           const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue, int* photons) const noexcept {
+                           const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue,
+                           int* photons) const noexcept {
     using namespace kernel_shape;
     switch (impl_->kernel) {
-        case PhotonKernel::Uniform: return sum<Uniform>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
-        case PhotonKernel::Cone: return sum<Cone>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
-        case PhotonKernel::Biweight: return sum<Biweight>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
-        case PhotonKernel::Epanechnikov: break;
+        case PhotonKernel::Uniform:
+            return sum<Uniform>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+        case PhotonKernel::Cone:
+            return sum<Cone>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+        case PhotonKernel::Biweight:
+            return sum<Biweight>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+        case PhotonKernel::Epanechnikov:
+            break;
     }
     return sum<Epanechnikov>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
 }

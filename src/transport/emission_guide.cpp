@@ -6,16 +6,16 @@ namespace pellucid {
 
 namespace {
 
-constexpr float kUniformShare = 0.1F;    ///< of the numbers, and of the choice of light (by power)
-constexpr std::size_t kMinItems = 24;    ///< a cell with fewer is not split
+constexpr float kUniformShare = 0.1F;  ///< of the numbers, and of the choice of light (by power)
+constexpr std::size_t kMinItems = 24;  ///< a cell with fewer is not split
 constexpr int kMaxDepth = 32;
 constexpr int kBins = 8;
 /// chi^2 with 7 degrees of freedom beyond which a cell is not uniform along an axis (p = 0.003).
 constexpr float kSplitChiSquare = 21.6F;
 
 /// Chi^2 of the items' positions along `axis` against uniform, in kBins bins.
-[[nodiscard]] float nonUniformity(const std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end, std::size_t axis,
-                                  float lower, float upper) {
+[[nodiscard]] float nonUniformity(const std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end,
+                                  std::size_t axis, float lower, float upper) {
     std::array<float, kBins> counts{};
     for (std::size_t i = begin; i < end; ++i) {
         const float t = (items[i].u[axis] - lower) / (upper - lower);
@@ -29,20 +29,25 @@ constexpr float kSplitChiSquare = 21.6F;
 
 }  // namespace
 
-EmissionGuide::EmissionGuide(const Lights& lights, std::vector<UsefulEmission> useful, double equalShare) : lights_(lights) {
+EmissionGuide::EmissionGuide(const Lights& lights, std::vector<UsefulEmission> useful, double equalShare)
+    : lights_(lights) {
     const auto count = static_cast<std::uint32_t>(lights.count());
     const double power = lights.totalPower();
     double trianglePower = 0.0;
     std::size_t lamps = 0;
     for (std::uint32_t l = 0; l < count; ++l) {
-        if (lights.kind(l) == LightKind::Triangle) trianglePower += lights.power(l);
-        else ++lamps;
+        if (lights.kind(l) == LightKind::Triangle)
+            trianglePower += lights.power(l);
+        else
+            ++lamps;
     }
     if (trianglePower > 0.0) ++lamps;
     double sum = 0.0;
     for (std::uint32_t l = 0; l < count; ++l) {
         const double byPower = power > 0.0 ? lights.power(l) / power : 1.0 / count;
-        const double alike = lights.kind(l) != LightKind::Triangle ? 1.0 : trianglePower > 0.0 ? lights.power(l) / trianglePower : 0.0;
+        const double alike = lights.kind(l) != LightKind::Triangle ? 1.0
+                             : trianglePower > 0.0                 ? lights.power(l) / trianglePower
+                                                                   : 0.0;
         sum += (1.0 - equalShare) * byPower + equalShare * alike / static_cast<double>(std::max<std::size_t>(1, lamps));
         lightCdf_.push_back(sum);
     }
@@ -65,7 +70,8 @@ void EmissionGuide::build(std::uint32_t node, std::vector<UsefulEmission>& items
     }
     if (worst < kSplitChiSquare) return;
     const float middle = 0.5F * (lower[axis] + upper[axis]);
-    const auto first = items.begin() + static_cast<std::ptrdiff_t>(begin), last = items.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto first = items.begin() + static_cast<std::ptrdiff_t>(begin),
+               last = items.begin() + static_cast<std::ptrdiff_t>(end);
     const auto split = std::stable_partition(first, last, [&](const UsefulEmission& e) { return e.u[axis] < middle; });
     const auto cut = begin + static_cast<std::size_t>(split - first);
     double leftMass = 0.0, mass = 0.0;
@@ -125,7 +131,8 @@ std::optional<GuidedEmission> EmissionGuide::sample(Sampler& sampler) const noex
     if (sampler.next1D() >= uniformShare_) warp(u);
     const float pdf = uniformShare_ + (1.0F - uniformShare_) * density(u);
     const auto it = std::upper_bound(lightCdf_.begin(), lightCdf_.end(), static_cast<double>(u[0]));
-    const auto light = static_cast<std::uint32_t>(std::min<std::ptrdiff_t>(it - lightCdf_.begin(), static_cast<std::ptrdiff_t>(lightCdf_.size()) - 1));
+    const auto light = static_cast<std::uint32_t>(
+        std::min<std::ptrdiff_t>(it - lightCdf_.begin(), static_cast<std::ptrdiff_t>(lightCdf_.size()) - 1));
     const double pmf = lightCdf_[light] - (light > 0 ? lightCdf_[light - 1] : 0.0);
     auto emission = lights_.sampleEmissionFrom(light, {u[1], u[2]}, {u[3], u[4]});
     if (!emission || !(pmf > 0.0)) return std::nullopt;

@@ -29,7 +29,9 @@ struct Grid {
           azimuths(std::max(7, static_cast<int>(std::lround(kPiD * elevations)))),
           cells(static_cast<std::size_t>(elevations) * static_cast<std::size_t>(azimuths)) {}
 
-    [[nodiscard]] Cell& at(int j, int k) noexcept { return cells[static_cast<std::size_t>(k) * static_cast<std::size_t>(elevations) + static_cast<std::size_t>(j)]; }
+    [[nodiscard]] Cell& at(int j, int k) noexcept {
+        return cells[static_cast<std::size_t>(k) * static_cast<std::size_t>(elevations) + static_cast<std::size_t>(j)];
+    }
 };
 
 [[nodiscard]] constexpr float square(float x) noexcept { return x * x; }
@@ -62,8 +64,10 @@ void addRotation(Grid& g, const Frame& frame, IrradianceRecord& record) {
 /// `nearestKept` (a record never speaks farther than that from them) would give slopes that no record may use.
 void addTranslation(Grid& g, const Frame& frame, float nearestKept, IrradianceRecord& record) {
     const auto m = static_cast<float>(g.elevations), n = static_cast<float>(g.azimuths);
-    const auto lower = [m](int j) { return std::sqrt(static_cast<float>(j) / m); };                                   // sin(theta_j-)
-    const auto cosine = [m](int j) { return std::sqrt(std::max(0.0F, 1.0F - static_cast<float>(j) / m)); };           // cos(theta_j-)
+    const auto lower = [m](int j) { return std::sqrt(static_cast<float>(j) / m); };  // sin(theta_j-)
+    const auto cosine = [m](int j) {
+        return std::sqrt(std::max(0.0F, 1.0F - static_cast<float>(j) / m));
+    };  // cos(theta_j-)
     float noise = 0.0F;
     for (int k = 0; k < g.azimuths; ++k) {
         const int before = (k + g.azimuths - 1) % g.azimuths;
@@ -81,15 +85,18 @@ void addTranslation(Grid& g, const Frame& frame, float nearestKept, IrradianceRe
                 const Cell& below = g.at(j - 1, k);
                 const float nearest = std::max(nearestKept, std::min(cell.distance, below.distance));
                 if (std::isfinite(nearest))
-                    add(radial, (kTwoPi / n) * cosine(j) * cosine(j) * lower(j) / nearest, cell.radiance - below.radiance);
+                    add(radial, (kTwoPi / n) * cosine(j) * cosine(j) * lower(j) / nearest,
+                        cell.radiance - below.radiance);
             }
             const Cell& side = g.at(j, before);
             const float nearest = std::max(nearestKept, std::min(cell.distance, side.distance));
             const float sin2 = (static_cast<float>(j) + 0.5F) / m;
             if (std::isfinite(nearest))
-                add(around, std::sqrt((1.0F - sin2) / sin2) * (cosine(j) - cosine(j + 1)) / nearest, cell.radiance - side.radiance);
+                add(around, std::sqrt((1.0F - sin2) / sin2) * (cosine(j) - cosine(j + 1)) / nearest,
+                    cell.radiance - side.radiance);
         }
-        for (glm::length_t c = 0; c < 3; ++c) record.translation[static_cast<std::size_t>(c)] += u * radial[c] + v * around[c];
+        for (glm::length_t c = 0; c < 3; ++c)
+            record.translation[static_cast<std::size_t>(c)] += u * radial[c] + v * around[c];
     }
     // Were every step across a border noise, the squared length would be about the sum of the squared steps: keep only what
     // exceeds it, as a positive-part James-Stein estimator does. [JamesStein1961]
@@ -133,18 +140,22 @@ IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const Gather
             const float phi = kTwoPi * (static_cast<float>(k) + jitter.y) / static_cast<float>(grid.azimuths);
             const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(0.0F, 1.0F - sin2));
             WalkRay ray;
-            ray.ray = Ray{origin, frame.toWorld({sine * std::cos(phi), sine * std::sin(phi), cosine}), std::numeric_limits<float>::infinity()};
+            ray.ray = Ray{origin, frame.toWorld({sine * std::cos(phi), sine * std::sin(phi), cosine}),
+                          std::numeric_limits<float>::infinity()};
             ray.absorption = point.absorption;
             Cell& cell = grid.at(j, k);
             // Below the true surface no light arrives, whatever the shading normal says.
-            if (glm::dot(ray.ray.direction, point.geometricNormal) > 0.0F) cell.radiance = walk.gather(ray, sampler, cell.distance);
-            else cell.distance = std::numeric_limits<float>::infinity();
+            if (glm::dot(ray.ray.direction, point.geometricNormal) > 0.0F)
+                cell.radiance = walk.gather(ray, sampler, cell.distance);
+            else
+                cell.distance = std::numeric_limits<float>::infinity();
             if (!isFinite(cell.radiance)) cell.radiance = Rgb(0.0F);
             const float s = 1.0F - cosine, s2 = s * s;
             record.irradiance += cell.radiance * norm;
             grazing += cell.radiance * (norm * s2 * s2 * s);
         }
-    for (glm::length_t c = 0; c < 3; ++c) record.grazingShare[c] = record.irradiance[c] > 0.0F ? grazing[c] / record.irradiance[c] : 0.0F;
+    for (glm::length_t c = 0; c < 3; ++c)
+        record.grazingShare[c] = record.irradiance[c] > 0.0F ? grazing[c] / record.irradiance[c] : 0.0F;
     addRotation(grid, frame, record);
     addTranslation(grid, frame, kNearestShare * options.minRadius, record);
     setRadius(grid, options, record);

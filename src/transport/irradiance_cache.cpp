@@ -74,8 +74,11 @@ void IrradianceCache::place(std::uint32_t node, const glm::vec3& lower, float si
         }
         const float half = 0.5F * o.size;
         for (unsigned octant = 0; octant < 8; ++octant) {
-            const glm::vec3 corner = o.lower + half * glm::vec3((octant & 1U) != 0 ? 1.0F : 0.0F, (octant & 2U) != 0 ? 1.0F : 0.0F, (octant & 4U) != 0 ? 1.0F : 0.0F);
-            if (glm::any(glm::greaterThan(corner, p + reach)) || glm::any(glm::lessThan(corner + half, p - reach))) continue;
+            const glm::vec3 corner =
+                o.lower + half * glm::vec3((octant & 1U) != 0 ? 1.0F : 0.0F, (octant & 2U) != 0 ? 1.0F : 0.0F,
+                                           (octant & 4U) != 0 ? 1.0F : 0.0F);
+            if (glm::any(glm::greaterThan(corner, p + reach)) || glm::any(glm::lessThan(corner + half, p - reach)))
+                continue;
             std::int32_t child = nodes_[o.node].child[octant];
             if (child < 0) {
                 child = static_cast<std::int32_t>(nodes_.size());
@@ -108,7 +111,8 @@ void IrradianceCache::insert(IrradianceRecord record) {
 }
 
 /// Ward's error of `record` at a point; infinite where it may not speak. [Ward1988]
-static float wardError(const IrradianceRecord& r, const glm::vec3& offset, const glm::vec3& normal, float limit) noexcept {
+static float wardError(const IrradianceRecord& r, const glm::vec3& offset, const glm::vec3& normal,
+                       float limit) noexcept {
     constexpr float kSilent = std::numeric_limits<float>::infinity();
     const float distance2 = glm::dot(offset, offset);
     const float reach = limit * r.radius;
@@ -118,7 +122,8 @@ static float wardError(const IrradianceRecord& r, const glm::vec3& offset, const
     return error < limit ? error : kSilent;
 }
 
-bool IrradianceCache::covers(const glm::vec3& position, const glm::vec3& normal, float limit, std::size_t old, float largestOld) const noexcept {
+bool IrradianceCache::covers(const glm::vec3& position, const glm::vec3& normal, float limit, std::size_t old,
+                             float largestOld) const noexcept {
     bool covered = false;
     forNear(position, [&](std::uint32_t i) {
         if (i < old && records_[i].radius > largestOld) return;

@@ -18,7 +18,9 @@ constexpr double kLeastFactor = 0.6, kMostFactor = 1.25;
 /// r over the root mean square of the radii so far, when r^2 falls as n^(-1/3).
 constexpr double kRadiusSoFar = 1.2247;
 
-[[nodiscard]] double equalPhotons(const FluxSums& s) noexcept { return s.squares > 0.0 ? s.sum * s.sum / s.squares : 0.0; }
+[[nodiscard]] double equalPhotons(const FluxSums& s) noexcept {
+    return s.squares > 0.0 ? s.sum * s.sum / s.squares : 0.0;
+}
 
 /// Whether the flux densities of disc and ring differ by more than their shot noise, pooled.
 [[nodiscard]] bool contradicts(const FluxSums& disc, double discArea, const FluxSums& both, double bothArea) noexcept {
@@ -45,8 +47,14 @@ float chooseKernelRadius(const CausticMap& map, const GatherPoint& point, const 
 }
 
 KernelRadii::KernelRadii(int width, int height, const KernelRadiusOptions& options)
-    : width_(width), height_(height), blocksX_((width + kBlock - 1) / kBlock), blocksY_((height + kBlock - 1) / kBlock), options_(options),
-      logRadius_(static_cast<std::size_t>(blocksX_) * static_cast<std::size_t>(blocksY_), 0.0F), logFactor_(logRadius_), radii_(logRadius_.size(), options.smallest) {}
+    : width_(width),
+      height_(height),
+      blocksX_((width + kBlock - 1) / kBlock),
+      blocksY_((height + kBlock - 1) / kBlock),
+      options_(options),
+      logRadius_(static_cast<std::size_t>(blocksX_) * static_cast<std::size_t>(blocksY_), 0.0F),
+      logFactor_(logRadius_),
+      radii_(logRadius_.size(), options.smallest) {}
 
 void KernelRadii::learn(const CausticMap& map, const std::vector<GatherPoint>& points, const Workers& workers) {
     ++passes_;
@@ -54,7 +62,8 @@ void KernelRadii::learn(const CausticMap& map, const std::vector<GatherPoint>& p
         const int x0 = static_cast<int>(block) % blocksX_ * kBlock, y0 = static_cast<int>(block) / blocksX_ * kBlock;
         // Another pixel of the block each time.
         const int x = std::min(x0 + (passes_ & 1), width_ - 1), y = std::min(y0 + (passes_ >> 1 & 1), height_ - 1);
-        const GatherPoint& p = points[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+        const GatherPoint& p =
+            points[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
         const float radius = p.valid && p.footprint > 0.0F ? chooseKernelRadius(map, p, options_) : options_.smallest;
         logRadius_[block] = passes_ == 1 ? std::log(radius) : 0.5F * (logRadius_[block] + std::log(radius));
     });
@@ -72,7 +81,8 @@ void KernelRadii::correctBlocks(std::uint32_t iterations, const std::vector<Show
             }
         if (!(near.variance > 0.0)) return;
         // Good until as many iterations again have been.
-        const double n = 2.0 * iterations, ratio = near.variance / (2.0 * n * std::max(near.bias2, 1e-4 * near.variance / n));
+        const double n = 2.0 * iterations,
+                     ratio = near.variance / (2.0 * n * std::max(near.bias2, 1e-4 * near.variance / n));
         const double factor = std::clamp(kRadiusSoFar * std::pow(ratio, 1.0 / 6.0), kLeastFactor, kMostFactor);
         const double bounded = std::clamp(std::exp(static_cast<double>(logFactor_[block])) * factor, 0.25, 2.0);
         logFactor_[block] = static_cast<float>(std::log(bounded));
@@ -87,8 +97,10 @@ void KernelRadii::smooth(const Workers& workers) {
         std::array<float, 9> near{};
         std::size_t n = 0;
         for (int y = std::max(0, by - 1); y <= std::min(blocksY_ - 1, by + 1); ++y)
-            for (int x = std::max(0, bx - 1); x <= std::min(blocksX_ - 1, bx + 1); ++x) near[n++] = logRadius_[blockAt(x, y)] + logFactor_[blockAt(x, y)];
-        std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(n / 2), near.begin() + static_cast<std::ptrdiff_t>(n));
+            for (int x = std::max(0, bx - 1); x <= std::min(blocksX_ - 1, bx + 1); ++x)
+                near[n++] = logRadius_[blockAt(x, y)] + logFactor_[blockAt(x, y)];
+        std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(n / 2),
+                         near.begin() + static_cast<std::ptrdiff_t>(n));
         radii_[block] = std::exp(near[n / 2]);
     });
 }

@@ -31,7 +31,8 @@ void LampChains::branchOff(const ChainVertex& vertex, const DeltaBranches& branc
         if (!(survive > 0.0F) || (survive < 1.0F && sampler.next1D() >= survive)) continue;
         b.throughput /= survive;
         const bool behind = glm::dot(way.wi, ng) < 0.0F;
-        b.ray = Ray{offsetOrigin(vertex.hit.point.position, behind ? -ng : ng), way.wi, std::numeric_limits<float>::infinity()};
+        b.ray = Ray{offsetOrigin(vertex.hit.point.position, behind ? -ng : ng), way.wi,
+                    std::numeric_limits<float>::infinity()};
         b.absorption = medium::afterHit(scene_, vertex.hit.point, vertex.bsdf, vertex.absorption, way.transmitted);
         b.ledger = vertex.ledger;
         b.ledger.pass(way.kind);
@@ -65,8 +66,8 @@ bool LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadi
         if (!isBlack(emitted)) sum.add(b.ledger.path(), throughput * emitted);
         const int vertices = b.vertices + 1;
         if ((bsdf.kinds() & (kSpecular | kGlossy)) != kNoLobe && (maxDepth_ == 0 || vertices <= maxDepth_))
-            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.ledger, vertices}, bsdf.deltaBranches(wo, TransportMode::Radiance),
-                      sampler);
+            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.ledger, vertices},
+                      bsdf.deltaBranches(wo, TransportMode::Radiance), sampler);
     }
     return true;
 }

@@ -41,8 +41,8 @@ struct LightPath {
 struct Arrival {
     SurfaceHit hit;
     Bsdf bsdf;
-    glm::vec3 wi;       ///< back along the ray
-    float shading;      ///< |wi.ns| / |wi.ng|: flux density on the true surface to irradiance of the shaded one
+    glm::vec3 wi;   ///< back along the ray
+    float shading;  ///< |wi.ns| / |wi.ng|: flux density on the true surface to irradiance of the shaded one
 };
 
 /// The next vertex of a light path, with absorption applied. Empty: it escaped or grazes.
@@ -71,8 +71,8 @@ struct Arrival {
 }
 
 /// Scatters flux among `kinds` (`by` receives the lobe's own); the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]
-[[nodiscard]] inline bool scatter(const Scene& scene, LightPath& path, const Arrival& a, LobeKinds kinds, Sampler& sampler,
-                                  LobeKinds* by = nullptr) noexcept {
+[[nodiscard]] inline bool scatter(const Scene& scene, LightPath& path, const Arrival& a, LobeKinds kinds,
+                                  Sampler& sampler, LobeKinds* by = nullptr) noexcept {
     const float chooseLobe = sampler.next1D();
     const auto sample = a.bsdf.sample(a.wi, chooseLobe, sampler.next2D(), kinds, TransportMode::Flux);
     path.energy.*path.sink += path.watts();
@@ -92,8 +92,8 @@ struct Arrival {
     path.flux /= survive;
     path.energy.roulette -= path.watts();
     const bool behind = glm::dot(sample->wi, a.bsdf.geometricNormal()) < 0.0F;
-    path.ray = Ray{offsetOrigin(a.hit.point.position, behind ? -a.bsdf.geometricNormal() : a.bsdf.geometricNormal()), sample->wi,
-                   std::numeric_limits<float>::infinity()};
+    path.ray = Ray{offsetOrigin(a.hit.point.position, behind ? -a.bsdf.geometricNormal() : a.bsdf.geometricNormal()),
+                   sample->wi, std::numeric_limits<float>::infinity()};
     path.absorption = medium::afterHit(scene, a.hit.point, a.bsdf, path.absorption, sample->transmitted);
     return true;
 }

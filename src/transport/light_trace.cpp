@@ -11,8 +11,8 @@ using namespace light_path;
 namespace {
 
 /// Connects an arrival to the lens, one splat for each kind of lobe; the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]
-[[nodiscard]] bool connect(const Scene& scene, const Camera& camera, const Arrival& a, const Rgb& flux, const glm::vec2& lens,
-                           LightPass& out) {
+[[nodiscard]] bool connect(const Scene& scene, const Camera& camera, const Arrival& a, const Rgb& flux,
+                           const glm::vec2& lens, LightPass& out) {
     const auto film = camera.project(a.hit.point.position, lens);
     if (!film || !(film->importance > 0.0F)) return false;
     const glm::vec3& ng = a.bsdf.geometricNormal();
@@ -22,8 +22,8 @@ namespace {
     const float geometricOut = std::fabs(glm::dot(film->direction, ng));
     if (!(shadingOut > 0.0F)) return false;
     ++out.rays;
-    const Ray shadow{offsetOrigin(a.hit.point.position, glm::dot(film->direction, ng) < 0.0F ? -ng : ng), film->direction,
-                     shadowLength(film->distance)};
+    const Ray shadow{offsetOrigin(a.hit.point.position, glm::dot(film->direction, ng) < 0.0F ? -ng : ng),
+                     film->direction, shadowLength(film->distance)};
     const float visible = scene.visibility(shadow);
     if (visible <= 0.0F) return false;
     const int x = static_cast<int>(film->position.x), y = static_cast<int>(film->position.y);
@@ -31,7 +31,8 @@ namespace {
     const float shading = a.shading * geometricOut / shadingOut;
     const Rgb scale = flux * (shading * film->importance * visible);
     for (const LobeKinds kind : {kGlossy, kDiffuse}) {
-        const Rgb part = (a.bsdf.kinds() & kGlossy) == kNoLobe ? f : a.bsdf.eval(a.wi, film->direction, kind, TransportMode::Flux);
+        const Rgb part =
+            (a.bsdf.kinds() & kGlossy) == kNoLobe ? f : a.bsdf.eval(a.wi, film->direction, kind, TransportMode::Flux);
         if (isBlack(part) || (a.bsdf.kinds() & kind) == kNoLobe) continue;
         PathString path;
         path.pass(kind);
@@ -43,8 +44,8 @@ namespace {
 
 }  // namespace
 
-LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide, const PhotonPassKey& key,
-                          const Workers& workers, const VisibleCells* looked) {
+LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide,
+                          const PhotonPassKey& key, const Workers& workers, const VisibleCells* looked) {
     const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
     auto chunks = inChunks<LightPass>(key.paths, workers, [&](std::uint32_t index, LightPass& out) {
         Sampler sampler(key.seed, key.pass, index);
@@ -57,15 +58,18 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
             ++out.rays;
             const auto a = arrive(scene, path, sampler);
             if (!a) break;
-            path.sink = (a->bsdf.kinds() & (kGlossy | kDiffuse)) != kNoLobe ? &EnergyBalance::left : &EnergyBalance::absorbed;
+            path.sink =
+                (a->bsdf.kinds() & (kGlossy | kDiffuse)) != kNoLobe ? &EnergyBalance::left : &EnergyBalance::absorbed;
             if (path.vertices > 1 && (a->bsdf.kinds() & (kGlossy | kDiffuse)) != kNoLobe) {
                 const bool kept = looked != nullptr && (a->bsdf.kinds() & kDiffuse) != kNoLobe;
                 const bool splatted = connect(scene, camera, *a, path.flux * perPath, lens, out);
                 if (splatted) path.sink = &EnergyBalance::stored;
                 if (splatted || (kept && looked->seen(a->hit.point.position))) arrived += luminance(path.flux);
                 if (kept)
-                    out.arrivals.push_back({a->hit.point.geometry, a->hit.point.primitive, a->hit.point.barycentric, a->bsdf.backSide(),
-                                            std::min(1.0F, std::fabs(glm::dot(a->wi, a->bsdf.shadingNormal()))), path.flux * (a->shading * perPath)});
+                    out.arrivals.push_back({a->hit.point.geometry, a->hit.point.primitive, a->hit.point.barycentric,
+                                            a->bsdf.backSide(),
+                                            std::min(1.0F, std::fabs(glm::dot(a->wi, a->bsdf.shadingNormal()))),
+                                            path.flux * (a->shading * perPath)});
             }
             if (!scatter(scene, path, *a, kSpecular, sampler)) break;
         }

@@ -10,7 +10,8 @@ namespace pellucid::medium {
 
 /// Absorption (per scene unit) of the segment that ended at this hit. Whoever meets a body's face from inside has come
 /// through that body, whatever was carried along; nested bodies and cameras inside of one come out right by this.
-[[nodiscard]] inline Rgb beforeHit(const Scene& scene, const SurfacePoint& point, const Bsdf& bsdf, const Rgb& carried) noexcept {
+[[nodiscard]] inline Rgb beforeHit(const Scene& scene, const SurfacePoint& point, const Bsdf& bsdf,
+                                   const Rgb& carried) noexcept {
     return bsdf.backSide() && bsdf.bordersVolume() ? scene.surfaces().materials()[point.material].absorption : carried;
 }
 

@@ -18,15 +18,16 @@ namespace {
 
 }  // namespace
 
-CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, const PhotonPassKey& key, const VisibleCells* visible,
-                                const Workers& workers, CasterTally* tally) {
+CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, const PhotonPassKey& key,
+                                const VisibleCells* visible, const Workers& workers, CasterTally* tally) {
     const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
     auto chunks = inChunks<CausticPass>(key.paths, workers, [&](std::uint32_t index, CausticPass& out) {
         Sampler sampler(key.seed, key.pass, index);
         const auto start = guide.sample(sampler);
         if (!start) return;
         LightPath path{start->emission.ray, start->emission.flux};
-        const float emitted = luminance(path.flux), density = scene.lights().etendueDensity(start->emission.light, path.ray.direction);
+        const float emitted = luminance(path.flux),
+                    density = scene.lights().etendueDensity(start->emission.light, path.ray.direction);
         bool useful = false;
         glm::vec3 landed(0.0F);
         Rgb arrived(0.0F);

@@ -36,7 +36,8 @@ void sortAlongMortonCurve(std::vector<Item>& items) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
         const glm::dvec3 q = (glm::dvec3(items[i].position) - glm::dvec3(bounds.lower)) / size * 2097151.0;
-        order[i] = {mortonCode(static_cast<std::uint64_t>(q.x), static_cast<std::uint64_t>(q.y), static_cast<std::uint64_t>(q.z)),
+        order[i] = {mortonCode(static_cast<std::uint64_t>(q.x), static_cast<std::uint64_t>(q.y),
+                               static_cast<std::uint64_t>(q.z)),
                     static_cast<std::uint32_t>(i)};
     }
     std::sort(order.begin(), order.end());

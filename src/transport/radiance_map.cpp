@@ -49,9 +49,9 @@ struct Reach {
 /// What a look-up visits: small, so that few cache lines are touched.
 struct RadianceSite {
     glm::vec3 position{0.0F}, normal{0.0F};
-    float radius = 0.0F;       ///< of the density estimate
-    float reach = 0.0F;        ///< of look-ups
-    float freeRadius = 0.0F;   ///< reachable all around; farther away the point's sectors decide
+    float radius = 0.0F;      ///< of the density estimate
+    float reach = 0.0F;       ///< of look-ups
+    float freeRadius = 0.0F;  ///< reachable all around; farther away the point's sectors decide
 };
 
 struct RadiancePoint {
@@ -117,8 +117,8 @@ struct NeighbourDistance {
     }
 };
 
-[[nodiscard]] float distanceToNeighbour(const PointTree<RadiancePoint>& tree, const std::vector<RadiancePoint>& points, const RadiancePoint& p,
-                                        float bound) {
+[[nodiscard]] float distanceToNeighbour(const PointTree<RadiancePoint>& tree, const std::vector<RadiancePoint>& points,
+                                        const RadiancePoint& p, float bound) {
     NeighbourDistance search{points, p.normal, bound * bound};
     tree.search(p.position, search);
     return search.found > kNeighbour ? std::sqrt(search.nearest[kNeighbour]) : bound;
@@ -153,7 +153,8 @@ struct NearestSite {
     }
 };
 
-[[nodiscard]] Rgb directIrradiance(const Scene& scene, const RadiancePoint& p, int samples, std::uint64_t seed, std::size_t index) {
+[[nodiscard]] Rgb directIrradiance(const Scene& scene, const RadiancePoint& p, int samples, std::uint64_t seed,
+                                   std::size_t index) {
     Rgb sum(0.0F);
     for (int s = 0; s < samples; ++s) {
         Sampler sampler(seed, index, static_cast<std::uint32_t>(s));
@@ -164,7 +165,8 @@ struct NearestSite {
         if (cosine <= 0.0F || glm::dot(light->wi, p.normal) <= 0.0F) continue;
         const Ray shadow = shadowRay(p.position, p.normal, light->wi, light->distance);
         const float visible = shadow.tMax > 0.0F ? scene.visibility(shadow) : 1.0F;
-        if (visible > 0.0F) sum += light->radiance * (visible * cosine * p.lobe.transmittance(cosine) / light->pdfSolidAngle);
+        if (visible > 0.0F)
+            sum += light->radiance * (visible * cosine * p.lobe.transmittance(cosine) / light->pdfSolidAngle);
     }
     return sum / static_cast<float>(samples);
 }
@@ -184,7 +186,8 @@ void measureReach(const Scene& scene, RadiancePoint& p) noexcept {
         distance[i] = hit ? hit->distance : p.lookup;
     }
     for (std::size_t middle = 1; middle < kRays; middle += 2)
-        p.reach.free[Reach::sector(frame, direction[middle])] = std::min({distance[middle - 1], distance[middle], distance[(middle + 1) % kRays]});
+        p.reach.free[Reach::sector(frame, direction[middle])] =
+            std::min({distance[middle - 1], distance[middle], distance[(middle + 1) % kRays]});
 }
 
 /// k-nearest density estimate with the (k-1) form, which is unbiased in a flat field, over the sectors' free areas; with fewer
@@ -209,7 +212,8 @@ void estimateIndirect(const Scene& scene, const PhotonList& photons, const std::
         const Photon& photon = photons[index];
         const float free = p.reach.free[Reach::sector(frame, photon.position - p.position)];
         if (distance2 > free * free) continue;
-        const float t = p.lobe.b != 0.0F ? p.lobe.transmittance(std::max(0.0F, glm::dot(photon.wi, p.shadingNormal))) : p.lobe.a;
+        const float t =
+            p.lobe.b != 0.0F ? p.lobe.transmittance(std::max(0.0F, glm::dot(photon.wi, p.shadingNormal))) : p.lobe.a;
         p.irradiance += photon.flux * (t / area);
         if (overSpecular[index] != 0) p.caustic += photon.flux * (t / area);
     }
@@ -229,7 +233,8 @@ struct RadianceMap::Impl {
         reach = farthest;
         sites.clear();
         for (const RadiancePoint& p : points)
-            sites.push_back({p.position, p.normal, p.radius, p.lookup, *std::min_element(p.reach.free.begin(), p.reach.free.end())});
+            sites.push_back({p.position, p.normal, p.radius, p.lookup,
+                             *std::min_element(p.reach.free.begin(), p.reach.free.end())});
         tree = std::make_unique<PointTree<RadianceSite>>(sites);
     }
 
@@ -240,8 +245,8 @@ struct RadianceMap::Impl {
     }
 };
 
-std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::vector<GatherPoint>& points, std::size_t count,
-                                    std::uint64_t seed, const Workers& workers) {
+std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::vector<GatherPoint>& points,
+                                    std::size_t count, std::uint64_t seed, const Workers& workers) {
     std::vector<std::uint32_t> from;
     for (std::uint32_t i = 0; i < points.size(); ++i)
         if (points[i].valid) from.push_back(i);
@@ -251,14 +256,16 @@ std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::
         const auto pick = static_cast<std::size_t>(choice.next1D() * static_cast<float>(from.size()));
         GatherPoint at = points[from[std::min(pick, from.size() - 1)]];
         for (int vertex = i % kSecondShare == 0 ? 2 : 1; vertex > 0 && at.valid; --vertex) {
-            Sampler sampler(hashCombine(seed, static_cast<std::uint64_t>(vertex)), kPlaceStream + 1, static_cast<std::uint32_t>(i));
+            Sampler sampler(hashCombine(seed, static_cast<std::uint64_t>(vertex)), kPlaceStream + 1,
+                            static_cast<std::uint32_t>(i));
             const glm::vec3 direction = Frame(at.normal).toWorld(sampleCosineHemisphere(sampler.next2D()));
             if (glm::dot(direction, at.geometricNormal) <= 0.0F) {
                 at.valid = false;
                 break;
             }
             WalkRay ray;
-            ray.ray = Ray{offsetOrigin(at.position, at.geometricNormal), direction, std::numeric_limits<float>::infinity()};
+            ray.ray =
+                Ray{offsetOrigin(at.position, at.geometricNormal), direction, std::numeric_limits<float>::infinity()};
             ray.absorption = at.absorption;
             at = Walk(context).findGatherPoint(ray, sampler);
         }
@@ -270,8 +277,9 @@ std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::
 
 RadianceMap::RadianceMap() : impl_(std::make_unique<Impl>()) {}
 
-RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& photons, const std::vector<GatherPoint>& places,
-                         const RadianceMapOptions& options, const Workers& workers, const RadianceMap* known)
+RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& photons,
+                         const std::vector<GatherPoint>& places, const RadianceMapOptions& options,
+                         const Workers& workers, const RadianceMap* known)
     : RadianceMap() {
     struct Indirect {
         glm::vec3 position;
@@ -304,7 +312,8 @@ RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& ph
     const PointTree<RadiancePoint> neighbours(points);
     workers.forEach(fresh, 256, [&](std::size_t i) {
         RadiancePoint& p = points[i];
-        p.lookup = std::min(kReach * distanceToNeighbour(neighbours, points, p, options.maxRadius), kReach * options.maxRadius);
+        p.lookup = std::min(kReach * distanceToNeighbour(neighbours, points, p, options.maxRadius),
+                            kReach * options.maxRadius);
     });
     workers.forEach(fresh, 256, [&](std::size_t i) {
         RadiancePoint& p = points[i];
@@ -334,7 +343,8 @@ std::vector<char> RadianceMap::save() const {
     static_assert(std::is_trivially_copyable_v<RadiancePoint> && sizeof(RadiancePoint) % sizeof(float) == 0);
     std::vector<char> bytes(sizeof(float) + impl_->points.size() * sizeof(RadiancePoint));
     std::memcpy(bytes.data(), &impl_->reach, sizeof(float));
-    if (!impl_->points.empty()) std::memcpy(bytes.data() + sizeof(float), impl_->points.data(), bytes.size() - sizeof(float));
+    if (!impl_->points.empty())
+        std::memcpy(bytes.data() + sizeof(float), impl_->points.data(), bytes.size() - sizeof(float));
     return bytes;
 }
 
@@ -342,10 +352,12 @@ std::unique_ptr<RadianceMap> RadianceMap::restore(const std::vector<char>& bytes
     if (bytes.size() < sizeof(float) || (bytes.size() - sizeof(float)) % sizeof(RadiancePoint) != 0) return nullptr;
     std::vector<float> numbers(bytes.size() / sizeof(float));
     std::memcpy(numbers.data(), bytes.data(), bytes.size());
-    if (!std::all_of(numbers.begin(), numbers.end(), [](float f) { return std::isfinite(f); }) || !(numbers[0] > 0.0F)) return nullptr;
+    if (!std::all_of(numbers.begin(), numbers.end(), [](float f) { return std::isfinite(f); }) || !(numbers[0] > 0.0F))
+        return nullptr;
     std::unique_ptr<RadianceMap> map(new RadianceMap());
     map->impl_->points.resize((bytes.size() - sizeof(float)) / sizeof(RadiancePoint));
-    if (!map->impl_->points.empty()) std::memcpy(map->impl_->points.data(), bytes.data() + sizeof(float), bytes.size() - sizeof(float));
+    if (!map->impl_->points.empty())
+        std::memcpy(map->impl_->points.data(), bytes.data() + sizeof(float), bytes.size() - sizeof(float));
     for (const RadiancePoint& p : map->impl_->points)
         if (!(glm::length(p.position) < kFarthest) || !(p.radius > 0.0F)) return nullptr;
     map->impl_->index(numbers[0]);

@@ -75,7 +75,11 @@ bool Subpath::startAtLight(Sampler& sampler) noexcept {
     const auto e = scene_.lights().sampleEmission({chooseLight, position, direction});
     if (!e) return false;
     const LightKind kind = scene_.lights().kind(e->light);
-    start_ = Start{nullptr, e->light, e->pmfLight * e->pdfPosition * e->pdfDirection, scene_.lights().cosineAt(e->light, e->ray.direction), e->delta,
+    start_ = Start{nullptr,
+                   e->light,
+                   e->pmfLight * e->pdfPosition * e->pdfDirection,
+                   scene_.lights().cosineAt(e->light, e->ray.direction),
+                   e->delta,
                    kind == LightKind::Directional || kind == LightKind::Environment};
     begin(e->ray, e->flux);
     return true;
@@ -83,16 +87,21 @@ bool Subpath::startAtLight(Sampler& sampler) noexcept {
 
 /// At the first surface. From the eye: N light paths may splat there, one eye path arrives with density importance x cos.
 /// From a light: next-event estimation from here could have made the light's point, a path from here could have hit it.
-MisSums Subpath::sumsAtFirst(const glm::vec3& point, const glm::vec3& horizon, float cosineHere, float distance) const noexcept {
+MisSums Subpath::sumsAtFirst(const glm::vec3& point, const glm::vec3& horizon, float cosineHere,
+                             float distance) const noexcept {
     if (from_ == From::Eye) {
-        const double arrival = static_cast<double>(start_.camera->importance(ray_.direction, distance)) * static_cast<double>(cosineHere);
+        const double arrival =
+            static_cast<double>(start_.camera->importance(ray_.direction, distance)) * static_cast<double>(cosineHere);
         return {rules_.power(static_cast<double>(rules_.lightPaths) / arrival), 0.0};
     }
     // Both techniques' densities over that of emission to here, per area; 1 / d^2 stands in all of them and cancels.
     const double arrival = static_cast<double>(start_.pdfEmission) * static_cast<double>(cosineHere);
-    auto direct = static_cast<double>(scene_.lights().pdfTowards(start_.light, point, horizon, -ray_.direction, distance));
-    direct *= start_.delta && !start_.infinite ? static_cast<double>(distance) * static_cast<double>(distance) : static_cast<double>(start_.cosine);
-    return {rules_.power(direct / arrival), start_.delta ? 0.0 : rules_.power(static_cast<double>(start_.cosine) / arrival)};
+    auto direct =
+        static_cast<double>(scene_.lights().pdfTowards(start_.light, point, horizon, -ray_.direction, distance));
+    direct *= start_.delta && !start_.infinite ? static_cast<double>(distance) * static_cast<double>(distance)
+                                               : static_cast<double>(start_.cosine);
+    return {rules_.power(direct / arrival),
+            start_.delta ? 0.0 : rules_.power(static_cast<double>(start_.cosine) / arrival)};
 }
 
 bool Subpath::advance(float coin) noexcept {
@@ -124,7 +133,8 @@ std::optional<VertexValue> Subpath::valueTowards(const PathVertex& v, const glm:
     if (behind && v.horizon != glm::vec3(0.0F)) return std::nullopt;
     const bool fromEye = from_ == From::Eye;
     // From the eye most directions are found black before the other side's view of the surface is needed.
-    if (fromEye && isBlack(v.bsdf.eval(v.toPrevious, direction, kAllLobes, TransportMode::Radiance))) return std::nullopt;
+    if (fromEye && isBlack(v.bsdf.eval(v.toPrevious, direction, kAllLobes, TransportMode::Radiance)))
+        return std::nullopt;
     VertexValue value;
     const Bsdf other = scene_.surfaces().bsdf(v.hit.point, direction);
     const Bsdf& viewer = fromEye ? v.bsdf : other;
@@ -157,10 +167,12 @@ bool Subpath::deltaStep(PathVertex& v, const BsdfSample& sample, const Bsdf& oth
     const glm::vec3 &n = v.bsdf.shadingNormal(), &m = other.shadingNormal();
     const bool sameFrame = n == m || n == -m;
     throughput_ *= sample.weight;
-    mis_ = {0.0, sameFrame ? v.mis.onward * rules_.power(static_cast<double>(cosOut) * deltaPdfRatio(scene_, v, sample)) : 0.0};
+    mis_ = {0.0, sameFrame ? v.mis.onward * rules_.power(static_cast<double>(cosOut) * deltaPdfRatio(scene_, v, sample))
+                           : 0.0};
     v.passed = sample.kind;
     if (from_ == From::Eye) return true;
-    const float shadingIn = cosine(v.toPrevious, n), geometricIn = cosine(v.toPrevious, v.bsdf.geometricNormal()), shadingOut = cosine(sample.wi, n);
+    const float shadingIn = cosine(v.toPrevious, n), geometricIn = cosine(v.toPrevious, v.bsdf.geometricNormal()),
+                shadingOut = cosine(sample.wi, n);
     if (!sameFrame || !(shadingOut > 0.0F)) return false;
     throughput_ *= shadingIn / geometricIn * cosOut / shadingOut;
     return true;
@@ -173,7 +185,8 @@ bool Subpath::glossyStep(PathVertex& v, const BsdfSample& sample, float cosOut, 
     if (choice.kind == kNoLobe) return false;
     throughput_ *= choice.value * ((from_ == From::Eye ? 1.0F : cosOut) / sample.pdfSolidAngle);
     const double out = static_cast<double>(cosOut) / static_cast<double>(sample.pdfSolidAngle);
-    mis_.onward = rules_.power(out) * (v.mis.onward * rules_.power(static_cast<double>(value->pdfBack)) + v.mis.connect);
+    mis_.onward =
+        rules_.power(out) * (v.mis.onward * rules_.power(static_cast<double>(value->pdfBack)) + v.mis.connect);
     mis_.connect = rules_.power(1.0 / static_cast<double>(sample.pdfSolidAngle));
     v.passed = choice.kind;
     return true;
@@ -197,18 +210,23 @@ bool Subpath::scatter(Sampler& sampler) noexcept {
     const float chooseLobe = sampler.next1D();
     const glm::vec2 u = sampler.next2D();
     const float choose = sampler.next1D(), roulette = sampler.next1D();
-    if (v.bsdf.kinds() == kNoLobe || (rules_.maxDepth > 0 && vertices_.size() > static_cast<std::size_t>(rules_.maxDepth))) return false;
-    const auto sample = v.bsdf.sample(v.toPrevious, chooseLobe, u, kAllLobes, from_ == From::Eye ? TransportMode::Radiance : TransportMode::Flux);
+    if (v.bsdf.kinds() == kNoLobe ||
+        (rules_.maxDepth > 0 && vertices_.size() > static_cast<std::size_t>(rules_.maxDepth)))
+        return false;
+    const auto sample = v.bsdf.sample(v.toPrevious, chooseLobe, u, kAllLobes,
+                                      from_ == From::Eye ? TransportMode::Radiance : TransportMode::Flux);
     if (!sample) return false;
     const glm::vec3& ng = v.bsdf.geometricNormal();
     const float cosOut = cosine(sample->wi, ng), before = maxComponent(throughput_);
     if (!(cosOut > kLeastCosine)) return false;
-    const bool goesOn = sample->delta ? deltaStep(v, *sample, scene_.surfaces().bsdf(v.hit.point, sample->wi), cosOut) : glossyStep(v, *sample, cosOut, choose);
+    const bool goesOn = sample->delta ? deltaStep(v, *sample, scene_.surfaces().bsdf(v.hit.point, sample->wi), cosOut)
+                                      : glossyStep(v, *sample, cosOut, choose);
     if (!goesOn || !survives(before, sample->etaScale, roulette)) return false;
     if (from_ == From::Eye) string_.pass(v.passed);
     absorption_ = medium::afterHit(scene_, v.hit.point, v.bsdf, absorption_, sample->transmitted);
     const bool behind = glm::dot(sample->wi, ng) < 0.0F;
-    ray_ = Ray{offsetOrigin(v.hit.point.position, behind ? -ng : ng), sample->wi, std::numeric_limits<float>::infinity()};
+    ray_ =
+        Ray{offsetOrigin(v.hit.point.position, behind ? -ng : ng), sample->wi, std::numeric_limits<float>::infinity()};
     return true;
 }
 
@@ -221,7 +239,8 @@ double Subpath::hitWeight(std::uint32_t light, float cosineAtLight, float areaFa
     const MisSums& sums = escapes ? mis_ : vertices_.back().mis;
     const float distance = escapes ? std::numeric_limits<float>::infinity() : vertices_.back().hit.distance;
     const Lights& lights = scene_.lights();
-    auto direct = static_cast<double>(lights.pdfTowards(light, from.hit.point.position, from.horizon, ray_.direction, distance));
+    auto direct =
+        static_cast<double>(lights.pdfTowards(light, from.hit.point.position, from.horizon, ray_.direction, distance));
     if (!escapes) direct *= static_cast<double>(areaFactor * cosineAtLight);
     const EmissionPdf emission = lights.pdfEmission(light, -ray_.direction);
     const double emit = static_cast<double>(emission.position) * static_cast<double>(emission.direction);
@@ -235,7 +254,8 @@ Rgb Subpath::emitted() const noexcept {
     const std::uint32_t light = scene_.lights().lightOf(v.hit.point.geometry, v.hit.point.primitive);
     if (light == Lights::kNoLight) return v.throughput * radiance;
     const float distance = v.hit.distance;
-    const double weight = hitWeight(light, scene_.lights().cosineAt(light, ray_.direction), 1.0F / (distance * distance));
+    const double weight =
+        hitWeight(light, scene_.lights().cosineAt(light, ray_.direction), 1.0F / (distance * distance));
     return v.throughput * radiance * static_cast<float>(weight);
 }
 

@@ -21,26 +21,29 @@ constexpr std::size_t kBlock = 16;
 
 }  // namespace
 
-TexelIrradiance::Place TexelIrradiance::placeOf(std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric,
-                                                bool back) const noexcept {
+TexelIrradiance::Place TexelIrradiance::placeOf(std::uint32_t geometry, std::uint32_t primitive,
+                                                const glm::vec2& barycentric, bool back) const noexcept {
     const auto corner = scene_.corners(geometry, primitive);
     const glm::dvec3 a(corner[0]), b(corner[1]), c(corner[2]);
     const double longest = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)});
     const double n = std::clamp(std::ceil(longest / static_cast<double>(width_)), 1.0, kMostParts);
-    const double u = std::clamp(static_cast<double>(barycentric.x), 0.0, 1.0) * n, v = std::clamp(static_cast<double>(barycentric.y), 0.0, 1.0) * n;
+    const double u = std::clamp(static_cast<double>(barycentric.x), 0.0, 1.0) * n,
+                 v = std::clamp(static_cast<double>(barycentric.y), 0.0, 1.0) * n;
     const double row = std::min(std::floor(u), n - 1.0), column = std::min(std::floor(v), n - 1.0);
     double s = u - row, t = v - column;
     const bool upper = s + t > 1.0;
     if (upper) s = 1.0 - s, t = 1.0 - t;
     Place place;
-    place.key = {geometry, primitive, static_cast<std::uint32_t>(row) * 2U + (upper ? 1U : 0U), static_cast<std::uint32_t>(column) * 2U + (back ? 1U : 0U)};
+    place.key = {geometry, primitive, static_cast<std::uint32_t>(row) * 2U + (upper ? 1U : 0U),
+                 static_cast<std::uint32_t>(column) * 2U + (back ? 1U : 0U)};
     place.quarter = s > 0.5 ? 1U : t > 0.5 ? 2U : s + t < 0.5 ? 0U : 3U;
     place.area = 0.5 * glm::length(glm::cross(b - a, c - a)) / (n * n);
     return place;
 }
 
 /// Walks over S lobes; wherever the path stands at a D lobe after at least one of them, it looks. [algorithms: E S+ D]
-void TexelIrradiance::lookThrough(std::uint32_t pixel, Sampler& sampler, std::vector<Look>& looks, std::uint64_t& rays) const {
+void TexelIrradiance::lookThrough(std::uint32_t pixel, Sampler& sampler, std::vector<Look>& looks,
+                                  std::uint64_t& rays) const {
     const auto width = static_cast<std::uint32_t>(camera_.width());
     const glm::vec2 corner(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
     const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
@@ -59,8 +62,9 @@ void TexelIrradiance::lookThrough(std::uint32_t pixel, Sampler& sampler, std::ve
         if (vertex > 0 && (bsdf.kinds() & kDiffuse) != kNoLobe) {
             const DiffuseLobe& lobe = bsdf.diffuse();
             const float towardsEye = std::min(1.0F, std::fabs(glm::dot(wo, bsdf.shadingNormal())));
-            looks.push_back({pixel, placeOf(hit->point.geometry, hit->point.primitive, hit->point.barycentric, bsdf.backSide()),
-                             throughput * lobe.reflectance * (kInvPi * lobe.transmittance(towardsEye)), lobe});
+            looks.push_back(
+                {pixel, placeOf(hit->point.geometry, hit->point.primitive, hit->point.barycentric, bsdf.backSide()),
+                 throughput * lobe.reflectance * (kInvPi * lobe.transmittance(towardsEye)), lobe});
         }
         const float choose = sampler.next1D();
         const auto next = bsdf.sample(wo, choose, sampler.next2D(), kSpecular, TransportMode::Radiance);
@@ -72,7 +76,8 @@ void TexelIrradiance::lookThrough(std::uint32_t pixel, Sampler& sampler, std::ve
         throughput /= survive;
         absorption = medium::afterHit(scene_, hit->point, bsdf, absorption, next->transmitted);
         const glm::vec3& n = bsdf.geometricNormal();
-        ray = Ray{offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi, std::numeric_limits<float>::infinity()};
+        ray = Ray{offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi,
+                  std::numeric_limits<float>::infinity()};
     }
 }
 
@@ -83,7 +88,8 @@ void TexelIrradiance::look(std::uint64_t seed, std::uint32_t pass, const Workers
     workers.forRanges(pixels, kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Sampler sampler(seed, kLookStream + i, pass);
-            lookThrough(static_cast<std::uint32_t>(i), sampler, chunks[begin / kPixelsPerChunk], rays[begin / kPixelsPerChunk]);
+            lookThrough(static_cast<std::uint32_t>(i), sampler, chunks[begin / kPixelsPerChunk],
+                        rays[begin / kPixelsPerChunk]);
         }
     });
     looks_.clear();
@@ -124,10 +130,13 @@ void TexelIrradiance::resolve(std::uint32_t pass, std::vector<LightSplat>& splat
         const auto& quarters = texel.sum[pass & 1U];
         Rgb value(0.0F), coarse(0.0F);
         for (glm::length_t c = 0; c < 3; ++c) {
-            const auto through = [&](const double* sum) { return static_cast<double>(l.lobe.a) * sum[c] - static_cast<double>(l.lobe.b) * sum[3 + c]; };
+            const auto through = [&](const double* sum) {
+                return static_cast<double>(l.lobe.a) * sum[c] - static_cast<double>(l.lobe.b) * sum[3 + c];
+            };
             double all = 0.0;
             for (const auto& q : quarters) all += through(q);
-            const double wide = all / (passes * texel.area), fine = through(quarters[l.place.quarter]) / (passes * 0.25 * texel.area);
+            const double wide = all / (passes * texel.area),
+                         fine = through(quarters[l.place.quarter]) / (passes * 0.25 * texel.area);
             value[c] = static_cast<float>((4.0 * fine - wide) / 3.0);
             coarse[c] = static_cast<float>(wide);
         }

@@ -20,7 +20,16 @@ constexpr int kCertainVertices = 64;
 constexpr float kSurvivalBeyond = 0.9995F;
 /// Sampler dimensions: 0 film, 1 lens, then this many a vertex.
 constexpr std::uint64_t kFirstDimension = 2, kDimensionsPerVertex = 8;
-enum VertexDimension : std::uint64_t { kCoin, kLightChoice, kLightPoint, kLobeChoice, kLobePoint, kKindChoice, kRoulette, kCorner };
+enum VertexDimension : std::uint64_t {
+    kCoin,
+    kLightChoice,
+    kLightPoint,
+    kLobeChoice,
+    kLobePoint,
+    kKindChoice,
+    kRoulette,
+    kCorner
+};
 /// Near a corner the map's blur would show: a gather ray shorter than u x this many look-up radii goes on instead.
 constexpr float kCornerRadii = 8.0F;
 
@@ -28,9 +37,9 @@ constexpr float kCornerRadii = 8.0F;
 
 /// How light behind the last D vertex is carried.
 enum class Behind : std::uint8_t {
-    NoReceiver,    ///< no D vertex yet
-    CausticMapped, ///< the caustic map holds what comes over S alone
-    PathTraced     ///< everything is path traced
+    NoReceiver,     ///< no D vertex yet
+    CausticMapped,  ///< the caustic map holds what comes over S alone
+    PathTraced      ///< everything is path traced
 };
 
 struct Walk::State {
@@ -40,21 +49,21 @@ struct Walk::State {
     EyeLedger ledger;
     Behind behind = Behind::NoReceiver;
     bool chainEmpty = true, chainSpecular = true;  ///< since the last D vertex (or the eye)
-    bool lampSampled = false;        ///< the last vertex did next-event estimation for the lobe that was sampled
-    bool skipDirect = false;         ///< a lamp met at once is counted elsewhere
-    float pdfSolidAngle = 0.0F;      ///< of the direction, over the sampled lobes
+    bool lampSampled = false;    ///< the last vertex did next-event estimation for the lobe that was sampled
+    bool skipDirect = false;     ///< a lamp met at once is counted elsewhere
+    float pdfSolidAngle = 0.0F;  ///< of the direction, over the sampled lobes
     glm::vec3 lightPoint{0.0F}, lightNormal{0.0F};  ///< where next-event estimation stood
     float etaScale = 1.0F, pathLength = 0.0F;
     int vertices = 0;
-    bool gathering = false;          ///< behind the first D vertex: the global map may answer
-    bool deltaChain = true;          ///< from the eye: no other lobe so far
-    bool lampsFollowed = false;      ///< over that chain, by LampChains
-    bool chainsNext = false;         ///< at this D vertex: the cache has served all but the caustics
-    bool sharedNext = false;         ///< at this D vertex: photons have brought their share of the caustics
-    bool onlyChains = false;         ///< behind it: S lobes alone go on
-    bool chainsShared = false;       ///< behind it: what comes over S alone has the eye's share only
-    float kernelRadius = 0.0F;       ///< at that D vertex
-    bool causticServed = false;      ///< at this D vertex: what comes over S alone is counted
+    bool gathering = false;      ///< behind the first D vertex: the global map may answer
+    bool deltaChain = true;      ///< from the eye: no other lobe so far
+    bool lampsFollowed = false;  ///< over that chain, by LampChains
+    bool chainsNext = false;     ///< at this D vertex: the cache has served all but the caustics
+    bool sharedNext = false;     ///< at this D vertex: photons have brought their share of the caustics
+    bool onlyChains = false;     ///< behind it: S lobes alone go on
+    bool chainsShared = false;   ///< behind it: what comes over S alone has the eye's share only
+    float kernelRadius = 0.0F;   ///< at that D vertex
+    bool causticServed = false;  ///< at this D vertex: what comes over S alone is counted
 
     /// Whether light that is met now has come over S alone to a receiver whose caustics photons share.
     [[nodiscard]] bool hasSharedChain() const noexcept { return chainsShared && chainSpecular && !chainEmpty; }
@@ -71,7 +80,7 @@ struct Walk::Vertex {
     const Bsdf& bsdf;
     glm::vec3 wo;
     float footprint;
-    glm::vec3 lightNormal;           ///< horizon for light sampling; zero where light may come from behind
+    glm::vec3 lightNormal;  ///< horizon for light sampling; zero where light may come from behind
 };
 
 float Walk::misWeight(float mine, float other) const noexcept {
@@ -95,7 +104,8 @@ float Walk::hitWeight(float pdfSampled, float pdfLight) const noexcept {
 
 /// The eye's share of light that `light` sends over S alone; `towards` points to it.
 float Walk::chainShare(const State& state, std::uint32_t light, const glm::vec3& towards) const noexcept {
-    return chanceShare(state.kernelRadius, context_.maps.photonsPerEtendue, context_.scene.lights().etendueDensity(light, -towards));
+    return chanceShare(state.kernelRadius, context_.maps.photonsPerEtendue,
+                       context_.scene.lights().etendueDensity(light, -towards));
 }
 
 void Walk::addEscaped(State& state) const noexcept {
@@ -103,8 +113,10 @@ void Walk::addEscaped(State& state) const noexcept {
     if (environment == nullptr || !state.lampCounts(context_.options.left)) return;
     float weight = 1.0F;
     if (state.lampSampled)
-        weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(state.lightPoint, state.lightNormal, state.ray.ray.direction));
-    if (state.hasSharedChain()) weight *= chainShare(state, context_.scene.lights().environmentLight(), state.ray.ray.direction);
+        weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(
+                                                    state.lightPoint, state.lightNormal, state.ray.ray.direction));
+    if (state.hasSharedChain())
+        weight *= chainShare(state, context_.scene.lights().environmentLight(), state.ray.ray.direction);
     state.radiance.add(state.ledger.path(), state.throughput * environment->radiance(state.ray.ray.direction) * weight);
 }
 
@@ -114,11 +126,12 @@ void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
     if (isBlack(emitted)) return;
     float weight = 1.0F;
     if (state.lampSampled)
-        weight = hitWeight(state.pdfSolidAngle,
-                           context_.scene.lights().pdfTriangle(state.lightPoint, state.lightNormal, hit.point.geometry, hit.point.primitive,
-                                                               state.ray.ray.direction, hit.distance));
+        weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfTriangle(
+                                                    state.lightPoint, state.lightNormal, hit.point.geometry,
+                                                    hit.point.primitive, state.ray.ray.direction, hit.distance));
     if (state.hasSharedChain())
-        weight *= chainShare(state, context_.scene.lights().lightOf(hit.point.geometry, hit.point.primitive), state.ray.ray.direction);
+        weight *= chainShare(state, context_.scene.lights().lightOf(hit.point.geometry, hit.point.primitive),
+                             state.ray.ray.direction);
     state.radiance.add(state.ledger.path(), state.throughput * emitted * weight);
 }
 
@@ -128,14 +141,16 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
     const DiffuseLobe& lobe = vertex.bsdf.diffuse();
     const glm::vec3& normal = vertex.bsdf.shadingNormal();
     const glm::vec3& position = vertex.hit.point.position;
-    const Rgb outgoing = lobe.reflectance * (kInvPi * lobe.transmittance(std::min(1.0F, std::fabs(glm::dot(vertex.wo, normal)))));
+    const Rgb outgoing =
+        lobe.reflectance * (kInvPi * lobe.transmittance(std::min(1.0F, std::fabs(glm::dot(vertex.wo, normal)))));
     if (state.gathering) {
         if (maps.global != nullptr) {
             const auto found = maps.global->find(position, vertex.bsdf.geometricNormal());
             const float u = sampler.next1D();
             const bool nearCorner = found && state.chainEmpty && vertex.hit.distance < u * kCornerRadii * found->radius;
             if (found && !nearCorner) {
-                state.radiance.add(state.ledger.pathAfter(kDiffuse).open(), state.throughput * outgoing * found->irradiance);
+                state.radiance.add(state.ledger.pathAfter(kDiffuse).open(),
+                                   state.throughput * outgoing * found->irradiance);
                 return kNoLobe;
             }
             // Near a corner all but the caustics, which path tracing hardly finds, goes on.
@@ -149,15 +164,18 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         return kDiffuse;
     }
     if (maps.caustic != nullptr) {
-        const float radius = glm::clamp(state.ray.kernelFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
+        const float radius =
+            glm::clamp(state.ray.kernelFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
         state.causticServed = true;
         state.sharedNext = maps.causticsShared();
         state.kernelRadius = radius;
         float blur = 0.0F;
         int photons = 0;
-        const Rgb irradiance = maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius, &blur,
-                                                          state.sharedNext ? maps.photonsPerEtendue : -1.0F, &photons);
-        if (first != nullptr && state.vertices == 1) first->kernelRadius = radius, first->kernelPhotons = static_cast<float>(photons);
+        const Rgb irradiance =
+            maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius, &blur,
+                                     state.sharedNext ? maps.photonsPerEtendue : -1.0F, &photons);
+        if (first != nullptr && state.vertices == 1)
+            first->kernelRadius = radius, first->kernelPhotons = static_cast<float>(photons);
         PathString path = state.ledger.pathAfter(kDiffuse);
         path.pass(kSpecular);
         const Rgb seen = state.throughput * outgoing * irradiance;
@@ -167,7 +185,8 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
     }
     if (maps.cache != nullptr) {
         if (const auto cached = maps.cache->lookup(position, normal)) {
-            state.radiance.add(state.ledger.pathAfter(kDiffuse).open(), state.throughput * outgoing * cached->through(lobe));
+            state.radiance.add(state.ledger.pathAfter(kDiffuse).open(),
+                               state.throughput * outgoing * cached->through(lobe));
             state.chainsNext = maps.causticChains;
             return state.chainsNext ? kDiffuse : kNoLobe;
         }
@@ -177,7 +196,8 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
 }
 
 /// Next-event estimation for `kinds`; those that are also `sampled` share the class with sampling by MIS.
-void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept {
+void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
+                     Sampler& sampler) noexcept {
     const float choice = sampler.next1D();
     const glm::vec2 u = sampler.next2D();
     const glm::vec3& position = vertex.hit.point.position;
@@ -188,9 +208,12 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     if (kinds == sampled && (kinds & (kinds - 1)) == 0 && context_.options.directions == Directions::Bsdf) {
         // One kind of lobe, which is sampled too: value and density in one go.
         const BsdfValue v = vertex.bsdf.evaluate(vertex.wo, light->wi, kinds, TransportMode::Radiance);
-        sum[kinds == kSpecular ? 0U : kinds == kGlossy ? 1U : 2U] = v.value * misWeight(light->pdfSolidAngle, weighted ? v.pdfSolidAngle : 0.0F);
+        sum[kinds == kSpecular ? 0U
+            : kinds == kGlossy ? 1U
+                               : 2U] = v.value * misWeight(light->pdfSolidAngle, weighted ? v.pdfSolidAngle : 0.0F);
     } else {
-        const float pdfSampled = weighted ? vertex.bsdf.pdf(vertex.wo, light->wi, sampled, context_.options.directions) : 0.0F;
+        const float pdfSampled =
+            weighted ? vertex.bsdf.pdf(vertex.wo, light->wi, sampled, context_.options.directions) : 0.0F;
         const float shared = misWeight(light->pdfSolidAngle, pdfSampled);
         for (std::size_t i = 0; i < 3; ++i) {
             const auto kind = static_cast<LobeKinds>(1U << i);
@@ -208,12 +231,14 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     Rgb arriving = light->radiance * (visible / light->pdfSolidAngle);
     const bool through = glm::dot(light->wi, ng) < 0.0F;
     arriving *= medium::transmittance(
-        medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, through), light->distance);
+        medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, through),
+        light->distance);
     for (std::size_t i = 0; i < 3; ++i)
         if (!isBlack(sum[i])) {
             const bool shared = i == 0 && state.chainsShared && state.chainSpecular;  // over S alone
-            state.radiance.add(state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)),
-                               state.throughput * arriving * sum[i] * (shared ? chainShare(state, light->light, light->wi) : 1.0F));
+            state.radiance.add(
+                state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)),
+                state.throughput * arriving * sum[i] * (shared ? chainShare(state, light->light, light->wi) : 1.0F));
         }
 }
 
@@ -221,7 +246,8 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
 bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
     const float chooseLobe = sampler.next1D();
     const glm::vec2 u = sampler.next2D();
-    const auto sample = vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance, context_.options.directions);
+    const auto sample =
+        vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance, context_.options.directions);
     if (!sample) return false;
     LobeKinds kind = sample->kind;
     Rgb weight = sample->weight;
@@ -232,7 +258,8 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
         float total = 0.0F;
         for (int i = 0; i < 3; ++i) {
             const auto k = static_cast<LobeKinds>(1 << i);
-            f[i] = (present & k) != kNoLobe ? vertex.bsdf.eval(vertex.wo, sample->wi, k, TransportMode::Radiance) : Rgb(0.0F);
+            f[i] = (present & k) != kNoLobe ? vertex.bsdf.eval(vertex.wo, sample->wi, k, TransportMode::Radiance)
+                                            : Rgb(0.0F);
             total += average(f[i]);
         }
         if (!(total > 0.0F)) return false;
@@ -264,11 +291,13 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     state.lightNormal = vertex.lightNormal;
     const glm::vec3& ng = vertex.bsdf.geometricNormal();
     const bool behindSurface = glm::dot(sample->wi, ng) < 0.0F;
-    state.ray.ray = Ray{offsetOrigin(vertex.hit.point.position, behindSurface ? -ng : ng), sample->wi, std::numeric_limits<float>::infinity()};
+    state.ray.ray = Ray{offsetOrigin(vertex.hit.point.position, behindSurface ? -ng : ng), sample->wi,
+                        std::numeric_limits<float>::infinity()};
     state.ray.absorption =
         medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, sample->transmitted);
     const float threshold = context_.options.rouletteThreshold;
-    float survive = threshold > 0.0F ? std::min(1.0F, maxComponent(state.throughput) * state.etaScale / threshold) : 1.0F;
+    float survive =
+        threshold > 0.0F ? std::min(1.0F, maxComponent(state.throughput) * state.etaScale / threshold) : 1.0F;
     if (state.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
     if (!(survive > 0.0F)) return false;
     if (survive < 1.0F) {
@@ -310,7 +339,8 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     if (kinds == kNoLobe || (context_.options.maxDepth > 0 && state.vertices > context_.options.maxDepth)) return false;
     if (context_.options.splitLampChains && state.deltaChain && !state.gathering && !state.lampsFollowed)
         state.lampsFollowed = lampChains_.follow(
-            {*hit, bsdf, wo, state.throughput, state.ray.absorption, state.etaScale, state.ledger, state.vertices}, sampler, state.radiance);
+            {*hit, bsdf, wo, state.throughput, state.ray.absorption, state.etaScale, state.ledger, state.vertices},
+            sampler, state.radiance);
     LobeKinds sampled = kinds & (kSpecular | kGlossy);
     LobeKinds direct = kinds;
     state.causticServed = state.chainsNext = state.sharedNext = false;
@@ -318,13 +348,15 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     if ((kinds & kDiffuse) != kNoLobe) {
         const LobeKinds carried = serveDiffuse(state, vertex, sampler, first);
         sampled = sampled | carried;
-        if (state.gathering && carried == kNoLobe) direct = direct & (kSpecular | kGlossy);  // the global map holds direct light too
+        if (state.gathering && carried == kNoLobe)
+            direct = direct & (kSpecular | kGlossy);  // the global map holds direct light too
     }
     // S lobes behind a mapped receiver are the caustic map's, the whole chain long.
     const bool chainMapped = state.behind == Behind::CausticMapped && state.gathering && state.chainSpecular;
     const bool left = context_.options.left.has(state.ledger.pathAfter(kSpecular));
     if (chainMapped || left) direct = direct & (kGlossy | kDiffuse);
-    if (context_.options.lights == LightStrategy::Chance) direct = static_cast<LobeKinds>(direct & ~static_cast<unsigned>(sampled));
+    if (context_.options.lights == LightStrategy::Chance)
+        direct = static_cast<LobeKinds>(direct & ~static_cast<unsigned>(sampled));
     sampler.setDimension(dimension + kLightChoice);
     if (direct != kNoLobe) addDirect(state, vertex, direct, sampled, sampler);
     if (sampled == kNoLobe) return false;
@@ -356,7 +388,8 @@ void Walk::write(const State& state, const SurfaceHit* hit, const Bsdf* bsdf) co
 }
 
 void Walk::run(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept {
-    while (step(state, sampler, first, firstDistance)) {}
+    while (step(state, sampler, first, firstDistance)) {
+    }
 }
 
 LayeredRadiance Walk::fromEye(const WalkRay& ray, Sampler& sampler, FirstHit* first, StringSums* strings) noexcept {
@@ -382,7 +415,8 @@ GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexce
     State state;
     state.ray = start;
     for (;;) {
-        const std::uint64_t dimension = kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
+        const std::uint64_t dimension =
+            kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
         sampler.setDimension(dimension + kCoin);
         ++rays_;
         const auto hit = context_.scene.intersect(state.ray.ray, holes_ ? sampler.next1D() : 0.0F);
@@ -392,8 +426,9 @@ GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexce
         const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo);
         const float footprint = state.ray.footprintAtOrigin + state.ray.footprintSpread * state.pathLength;
         if ((bsdf.kinds() & kDiffuse) != kNoLobe)
-            return {true, hit->point.position, bsdf.shadingNormal(), bsdf.geometricNormal(), footprint, state.ray.absorption, bsdf.diffuse(),
-                    luminance(state.throughput), 0.0F};
+            return {true,      hit->point.position,  bsdf.shadingNormal(), bsdf.geometricNormal(),
+                    footprint, state.ray.absorption, bsdf.diffuse(),       luminance(state.throughput),
+                    0.0F};
         const Vertex vertex{*hit, bsdf, wo, footprint, glm::vec3(0.0F)};
         sampler.setDimension(dimension + kLobeChoice);
         if (!scatter(state, vertex, kSpecular | kGlossy, sampler)) return {};

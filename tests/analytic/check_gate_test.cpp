@@ -42,8 +42,8 @@ TEST(CheckGate, SeesEnergyThatIsLostOrMade) {
     const By path{Method::Path, 128, 0.0, 0.03}, photon{Method::Photon, 4, 0.01, 0.03};
     EXPECT_TRUE(holds(room(workers, path, 1.0F, 0)));
     EXPECT_TRUE(holds(room(workers, photon, 1.0F, 0)));
-    EXPECT_FALSE(holds(room(workers, path, 1.05F, 0)));    // 5 % too bright
-    EXPECT_FALSE(holds(room(workers, path, 1.0F, 12)));    // paths cut: 5 % lost in the tail
+    EXPECT_FALSE(holds(room(workers, path, 1.05F, 0)));  // 5 % too bright
+    EXPECT_FALSE(holds(room(workers, path, 1.0F, 12)));  // paths cut: 5 % lost in the tail
     EXPECT_FALSE(holds(room(workers, photon, 1.05F, 0)));
 }
 
@@ -54,15 +54,21 @@ TEST(CheckGate, SeesEnergyThatIsLostOrMade) {
     b.box({-halfSlab, -halfSlab, 0.5}, {halfSlab, halfSlab, 0.7}, glass(ior));
     b.sun({0, 0, -1}, 3.0);
     b.view(glm::dvec3(0.0), kUp, 0.8, 0.3);
-    return measure({workers, 0}, {b.description(), {}, 3.0 * slabTransmittance(1.0, 1.5), kPiD / 0.5, "irradiance",
-                                  {{Method::Photon, 16, 0.005, 0.02, "caustic"}}, 16, smallSettings()});
+    return measure({workers, 0}, {b.description(),
+                                  {},
+                                  3.0 * slabTransmittance(1.0, 1.5),
+                                  kPiD / 0.5,
+                                  "irradiance",
+                                  {{Method::Photon, 16, 0.005, 0.02, "caustic"}},
+                                  16,
+                                  smallSettings()});
 }
 
 TEST(CheckGate, SeesCausticsThatAreWrong) {
     const Workers workers(2);
     EXPECT_TRUE(holds(slab(workers, 1.5F, 1.0)));
-    EXPECT_FALSE(holds(slab(workers, 1.6F, 1.0)));  // 2.4 % too little gets through
-    EXPECT_FALSE(holds(slab(workers, 1.5F, 0.38))); // a rim without caustic, 10 % of the patch
+    EXPECT_FALSE(holds(slab(workers, 1.6F, 1.0)));   // 2.4 % too little gets through
+    EXPECT_FALSE(holds(slab(workers, 1.5F, 0.38)));  // a rim without caustic, 10 % of the patch
 }
 
 TEST(CheckGate, AFigureMustBeANumberAndSharp) {
@@ -77,10 +83,13 @@ TEST(CheckGate, AFigureMustBeANumberAndSharp) {
     EXPECT_FALSE(f.passed());
     f = good, f.interval = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(f.passed());
-    CheckCase thrown{"thrown", CheckGroup::Extreme, "", "", true, [](const CheckContext&) -> std::vector<Finding> { throw std::runtime_error("burst"); }};
+    CheckCase thrown{"thrown", CheckGroup::Extreme,
+                     "",       "",
+                     true,     [](const CheckContext&) -> std::vector<Finding> { throw std::runtime_error("burst"); }};
     const Workers workers(1);
     EXPECT_FALSE(runCheck(thrown, {workers, 0}).passed());
-    CheckCase silent{"silent", CheckGroup::Extreme, "", "", true, [](const CheckContext&) { return std::vector<Finding>{}; }};
+    CheckCase silent{
+        "silent", CheckGroup::Extreme, "", "", true, [](const CheckContext&) { return std::vector<Finding>{}; }};
     EXPECT_FALSE(runCheck(silent, {workers, 0}).passed());  // no figure is no success
 }
 

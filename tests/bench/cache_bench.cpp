@@ -81,7 +81,8 @@ void record(benchmark::State& state) {
     std::vector<GatherPoint> points;
     for (int i = 0; i < 64 * 64; ++i) {
         Sampler sampler(1, static_cast<std::uint64_t>(i), 0);
-        const CameraRay ray = camera.ray({static_cast<float>(i % 64) + 0.5F, static_cast<float>(i / 64) + 0.5F}, {0.5F, 0.5F});
+        const CameraRay ray =
+            camera.ray({static_cast<float>(i % 64) + 0.5F, static_cast<float>(i / 64) + 0.5F}, {0.5F, 0.5F});
         const GatherPoint p = walk.findGatherPoint({ray.ray, ray.footprintAtOrigin, ray.footprintSpread}, sampler);
         if (p.valid) points.push_back(p);
     }

@@ -38,7 +38,9 @@ const glm::vec3 kUp(0.0F, 0.0F, 1.0F);
     return photons;
 }
 
-[[nodiscard]] float radiusFor(std::size_t count) { return static_cast<float>(std::sqrt(kWanted / (3.14159265 * static_cast<double>(count)))); }
+[[nodiscard]] float radiusFor(std::size_t count) {
+    return static_cast<float>(std::sqrt(kWanted / (3.14159265 * static_cast<double>(count))));
+}
 
 [[nodiscard]] double heapBytes() {
     const struct mallinfo2 info = mallinfo2();
@@ -51,7 +53,8 @@ public:
     [[nodiscard]] glm::vec3 next() noexcept {
         constexpr std::uint32_t kSide = 512;
         const std::uint32_t i = at_++ % (kSide * kSide);
-        return {0.05F + 0.9F * static_cast<float>(i % kSide) / kSide, 0.05F + 0.9F * static_cast<float>(i / kSide) / kSide, 0.0F};
+        return {0.05F + 0.9F * static_cast<float>(i % kSide) / kSide,
+                0.05F + 0.9F * static_cast<float>(i / kSide) / kSide, 0.0F};
     }
 
 private:
@@ -62,7 +65,8 @@ struct PlainTree {
     PhotonList photons;
     std::vector<PointSite> sites;
     PointTree<PointSite> tree;
-    explicit PlainTree(PhotonList list) : photons(std::move(list)), sites(photons.begin(), photons.end()), tree(sites) {}
+    explicit PlainTree(PhotonList list)
+        : photons(std::move(list)), sites(photons.begin(), photons.end()), tree(sites) {}
 };
 
 /// Made once for each count: the last one is kept.
@@ -110,7 +114,8 @@ void accumulate(benchmark::State& state) {
     const DiffuseLobe lobe{Rgb(1.0F)};
     Queries queries;
     float blur = 0.0F;
-    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(map.irradiance(queries.next(), kUp, kUp, lobe, radius, &blur));
+    for ([[maybe_unused]] auto _ : state)
+        benchmark::DoNotOptimize(map.irradiance(queries.next(), kUp, kUp, lobe, radius, &blur));
     state.SetItemsProcessed(state.iterations());
 }
 
@@ -125,7 +130,8 @@ struct ListSum {
     void add(const Photon& p, float distance2) noexcept {
         const float height = glm::dot(p.position - point, kUp);
         if (glm::dot(p.normal, kUp) < 0.5F || height * height > 0.09F * radius2) return;
-        const float part = distance2 / radius2, through = lobe.b != 0.0F ? lobe.transmittance(std::max(0.0F, glm::dot(p.wi, kUp))) : 1.0F;
+        const float part = distance2 / radius2,
+                    through = lobe.b != 0.0F ? lobe.transmittance(std::max(0.0F, glm::dot(p.wi, kUp))) : 1.0F;
         sum += glm::dvec3(p.flux * ((1.0F - part) * through));
         if (part < 0.5F) inner += static_cast<double>(luminance(p.flux) * (2.0F * (1.0F - 2.0F * part) * through));
     }
@@ -180,8 +186,10 @@ int main(int argc, char** argv) {
     bool large = false;
     int kept = 0;
     for (int i = 0; i < argc; ++i) {
-        if (std::string_view(argv[i]) == "--large") large = true;
-        else argv[kept++] = argv[i];
+        if (std::string_view(argv[i]) == "--large")
+            large = true;
+        else
+            argv[kept++] = argv[i];
     }
     if (large) {
         using namespace pellucid;

@@ -17,8 +17,10 @@ void readBack(const std::filesystem::path& file) {
         fuzz::require(state.has_value());
         Film film(2, 2);
         const std::vector<char> before = film.save();
-        if (film.restore(state->film)) fuzz::require(film.save() == state->film);
-        else fuzz::require(film.save() == before);
+        if (film.restore(state->film))
+            fuzz::require(film.save() == state->film);
+        else
+            fuzz::require(film.save() == before);
     } catch (const Error&) {
     }
 }

@@ -11,7 +11,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace pellucid;
     if (size == 0) return 0;
-    static const std::array<fuzz::ScratchFile, 3> kFiles{fuzz::ScratchFile("map.exr"), fuzz::ScratchFile("map.hdr"), fuzz::ScratchFile("map.pfm")};
+    static const std::array<fuzz::ScratchFile, 3> kFiles{fuzz::ScratchFile("map.exr"), fuzz::ScratchFile("map.hdr"),
+                                                         fuzz::ScratchFile("map.pfm")};
     const auto file = kFiles[data[0] % kFiles.size()].write(data + 1, size - 1);
     try {
         const EnvironmentDescription sky = loadEnvironment(file.string());

@@ -21,8 +21,7 @@ inline void require(bool condition) {
 class ScratchFile {
 public:
     explicit ScratchFile(const std::string& name)
-        : folder_(place() / ("pellucid-fuzz-" + std::to_string(getpid()))),
-          file_(folder_ / name) {
+        : folder_(place() / ("pellucid-fuzz-" + std::to_string(getpid()))), file_(folder_ / name) {
         std::filesystem::create_directories(file_.parent_path());
     }
     ~ScratchFile() {
@@ -33,7 +32,8 @@ public:
     ScratchFile& operator=(const ScratchFile&) = delete;
 
     const std::filesystem::path& write(const void* data, std::size_t size) const {
-        std::ofstream(file_, std::ios::binary).write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+        std::ofstream(file_, std::ios::binary)
+            .write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
         return file_;
     }
     [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }

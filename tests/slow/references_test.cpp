@@ -17,7 +17,8 @@ namespace {
 
 using namespace testing;
 
-const std::filesystem::path kShared = PELLUCID_SHARED_SCENES, kOwn = std::filesystem::path(PELLUCID_SOURCE_DIR) / "scenes";
+const std::filesystem::path kShared = PELLUCID_SHARED_SCENES,
+                            kOwn = std::filesystem::path(PELLUCID_SOURCE_DIR) / "scenes";
 
 struct Witness {
     const char* name;
@@ -38,7 +39,9 @@ double noiseOfBlock(const Image& image, int x0, int y0, int block) {
             for (int j = -1; j <= 1; ++j)
                 for (int i = -1; i <= 1; ++i) {
                     const auto at = static_cast<std::size_t>((y + j) * image.width() + x + i);
-                    v += kMask[j + 1][i + 1] * static_cast<double>(average(Rgb(image.at(at, image.channel("R")), image.at(at, image.channel("G")), image.at(at, image.channel("B")))));
+                    v += kMask[j + 1][i + 1] * static_cast<double>(average(Rgb(image.at(at, image.channel("R")),
+                                                                               image.at(at, image.channel("G")),
+                                                                               image.at(at, image.channel("B")))));
                 }
             sum += v * v;
         }
@@ -71,25 +74,28 @@ TEST_P(Witnesses, MeanAndBlocksAgree) {
         const int x0 = static_cast<int>(i) % columns * kBlock, y0 = static_cast<int>(i) / columns * kBlock;
         const MeanOfSeeds cell = cellOverSeeds(ours, i);
         // Student's t with 5 degrees of freedom: 9.7 leaves one block in ten thousand outside.
-        const double bar = 9.7 * std::sqrt(cell.variance) + 4.0 * std::sqrt(noiseOfBlock(reference, x0, y0, kBlock)) + w.blockBias * theirs[i] + 1e-4 * mean;
+        const double bar = 9.7 * std::sqrt(cell.variance) + 4.0 * std::sqrt(noiseOfBlock(reference, x0, y0, kBlock)) +
+                           w.blockBias * theirs[i] + 1e-4 * mean;
         if (std::fabs(cell.mean - theirs[i]) <= bar) continue;
         ++outside;
-        std::cout << "  block at " << x0 << "," << y0 << ": " << cell.mean << " for " << theirs[i] << ", bar " << bar << "\n";
+        std::cout << "  block at " << x0 << "," << y0 << ": " << cell.mean << " for " << theirs[i] << ", bar " << bar
+                  << "\n";
     }
     EXPECT_EQ(outside, 0) << w.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Shared, Witnesses,
-                         ::testing::Values(Witness{"cornell-boxes", Method::Path, 24, 0.0}, Witness{"cornell-boxes", Method::Bdpt, 12, 0.0},
-                                           Witness{"corridor", Method::Bdpt, 24, 0.0}, Witness{"cornell-glass", Method::Reference, 24, 0.02},
-                                           Witness{"cornell-glass", Method::Bdpt, 24, 0.02}, Witness{"ring", Method::Reference, 24, 0.02},
-                                           Witness{"pool", Method::Reference, 24, 0.02}, Witness{"goblet", Method::Reference, 24, 0.02},
-                                           Witness{"peer-box", Method::Reference, 8, 0.01}),
-                         [](const auto& w) {
-                             std::string name = w.param.name;
-                             name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
-                             return name + (w.param.method == Method::Path ? "Path" : w.param.method == Method::Bdpt ? "Bdpt" : "Reference");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Shared, Witnesses,
+    ::testing::Values(Witness{"cornell-boxes", Method::Path, 24, 0.0}, Witness{"cornell-boxes", Method::Bdpt, 12, 0.0},
+                      Witness{"corridor", Method::Bdpt, 24, 0.0}, Witness{"cornell-glass", Method::Reference, 24, 0.02},
+                      Witness{"cornell-glass", Method::Bdpt, 24, 0.02}, Witness{"ring", Method::Reference, 24, 0.02},
+                      Witness{"pool", Method::Reference, 24, 0.02}, Witness{"goblet", Method::Reference, 24, 0.02},
+                      Witness{"peer-box", Method::Reference, 8, 0.01}),
+    [](const auto& w) {
+        std::string name = w.param.name;
+        name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+        return name + (w.param.method == Method::Path ? "Path" : w.param.method == Method::Bdpt ? "Bdpt" : "Reference");
+    });
 
 /// The photon method's allowance in a group; classes that it samples from the lamps have none.
 double photonAllowance(const std::string& group) {
@@ -100,7 +106,8 @@ double photonAllowance(const std::string& group) {
 class Ledger : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Ledger, PhotonsAgreeWithTheReferenceClassByClass) {
-    const std::filesystem::path own = kOwn / (GetParam() + ".glb"), shared = kShared / "generated" / (GetParam() + ".glb");
+    const std::filesystem::path own = kOwn / (GetParam() + ".glb"),
+                                shared = kShared / "generated" / (GetParam() + ".glb");
     const std::filesystem::path file = std::filesystem::exists(own) ? own : shared;
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no ../shared/scenes";
     const Workers workers;
@@ -112,15 +119,19 @@ TEST_P(Ledger, PhotonsAgreeWithTheReferenceClassByClass) {
     photon.method = Method::Photon;
     photon.samples = 12;
     photon.firstSeed = 900;
-    for (const GroupDifference& d : compareGroups(renderSeeds(scene, reference, workers), renderSeeds(scene, photon, workers), photonAllowance, 0.004)) {
-        std::cout << GetParam() << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error << "\n";
-        EXPECT_TRUE(d.holds()) << GetParam() << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
+    for (const GroupDifference& d : compareGroups(renderSeeds(scene, reference, workers),
+                                                  renderSeeds(scene, photon, workers), photonAllowance, 0.004)) {
+        std::cout << GetParam() << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error
+                  << "\n";
+        EXPECT_TRUE(d.holds()) << GetParam() << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- "
+                               << d.error;
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(AllScenes, Ledger,
-                         ::testing::Values("corner-open", "diffuse-room", "glass-and-mirror", "goblet", "lens-point", "many-lamps", "pool", "prism-spot",
-                                           "ring", "rough-metal", "textured", "two-rooms", "cornell-glass", "cornell-boxes", "peer-box"),
+                         ::testing::Values("corner-open", "diffuse-room", "glass-and-mirror", "goblet", "lens-point",
+                                           "many-lamps", "pool", "prism-spot", "ring", "rough-metal", "textured",
+                                           "two-rooms", "cornell-glass", "cornell-boxes", "peer-box"),
                          [](const auto& name) {
                              std::string text = name.param;
                              text.erase(std::remove(text.begin(), text.end(), '-'), text.end());

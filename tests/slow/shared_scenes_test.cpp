@@ -27,7 +27,8 @@ std::vector<fs::path> filesUnder(const fs::path& folder, const std::vector<std::
     std::vector<fs::path> files;
     if (!fs::is_directory(folder)) return files;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (std::ranges::find(extensions, entry.path().extension().string()) != extensions.end()) files.push_back(entry.path());
+        if (std::ranges::find(extensions, entry.path().extension().string()) != extensions.end())
+            files.push_back(entry.path());
     std::ranges::sort(files);
     return files;
 }
@@ -42,8 +43,9 @@ RenderResult renderSmall(const Scene& scene, Method method, const Workers& worke
 }
 
 void expectWholePicture(const RenderResult& result) {
-    EXPECT_EQ(result.record.nonfinite.count, 0U) << "first at pixel " << result.record.nonfinite.x << "," << result.record.nonfinite.y
-                                                 << ", sample " << result.record.nonfinite.sample;
+    EXPECT_EQ(result.record.nonfinite.count, 0U)
+        << "first at pixel " << result.record.nonfinite.x << "," << result.record.nonfinite.y << ", sample "
+        << result.record.nonfinite.sample;
     const bool whole = std::ranges::all_of(result.image.data(), [](float v) { return std::isfinite(v); });
     EXPECT_TRUE(whole) << "the image holds values that are not finite";
 }
@@ -97,7 +99,8 @@ TEST(SharedScenes, EveryModelRenders) {
 
 TEST(SharedScenes, OurOwnScenesRender) {
     const Workers workers(2);
-    for (const fs::path& file : filesUnder(fs::path(PELLUCID_SOURCE_DIR) / "scenes", {".glb"})) expectRenders(file, workers);
+    for (const fs::path& file : filesUnder(fs::path(PELLUCID_SOURCE_DIR) / "scenes", {".glb"}))
+        expectRenders(file, workers);
 }
 
 TEST(SharedScenes, EveryEnvironmentLights) {

@@ -23,12 +23,14 @@ inline double incompleteBeta(double a, double b, double x) {
     if (x <= 0.0) return 0.0;
     if (x >= 1.0) return 1.0;
     if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - incompleteBeta(b, a, 1.0 - x);
-    const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
+    const double front =
+        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
     double c = 1.0, d = 1.0 - (a + b) * x / (a + 1.0);
     d = 1.0 / d;
     double f = d;
     for (int m = 1; m < 500; ++m) {
-        for (const double term : {m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)), -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))}) {
+        for (const double term : {m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
+                                  -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))}) {
             d = 1.0 / (1.0 + term * d);
             c = 1.0 + term / c;
             f *= c * d;
@@ -133,23 +135,24 @@ inline double welch(const MeanOfSeeds& a, const MeanOfSeeds& b) {
     // What float sums round off is no difference.
     const double rounding = 1e-6 * (std::fabs(a.mean) + std::fabs(b.mean));
     if (variance <= rounding * rounding) return std::fabs(difference) <= 10.0 * rounding ? 1.0 : 0.0;
-    const double dof = variance * variance / (a.variance * a.variance / (a.seeds - 1) + b.variance * b.variance / (b.seeds - 1));
+    const double dof =
+        variance * variance / (a.variance * a.variance / (a.seeds - 1) + b.variance * b.variance / (b.seeds - 1));
     return studentTail(difference / std::sqrt(variance), dof);
 }
 
 struct Agreement {
-    double ratio = 1.0;        ///< of the means of the whole image, b over a
-    double error = 0.0;        ///< standard error of that ratio
-    double pMean = 1.0;        ///< of the means being equal
-    double pUniform = 1.0;     ///< of the cells' p-values being uniform
-    double pLeast = 1.0;       ///< of the least of them being that small
+    double ratio = 1.0;     ///< of the means of the whole image, b over a
+    double error = 0.0;     ///< standard error of that ratio
+    double pMean = 1.0;     ///< of the means being equal
+    double pUniform = 1.0;  ///< of the cells' p-values being uniform
+    double pLeast = 1.0;    ///< of the least of them being that small
     int cells = 0;
     [[nodiscard]] bool holds(double level) const { return pMean > level && pUniform > level && pLeast > level; }
 };
 
 inline std::ostream& operator<<(std::ostream& out, const Agreement& a) {
-    return out << "mean ratio " << a.ratio << " +- " << a.error << " (p " << a.pMean << "), " << a.cells << " cells: uniform p " << a.pUniform
-               << ", least p " << a.pLeast;
+    return out << "mean ratio " << a.ratio << " +- " << a.error << " (p " << a.pMean << "), " << a.cells
+               << " cells: uniform p " << a.pUniform << ", least p " << a.pLeast;
 }
 
 inline Agreement agreementOf(const SeedValues& a, const SeedValues& b) {

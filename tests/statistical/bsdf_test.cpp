@@ -323,7 +323,8 @@ TEST(Bsdf, DeltaBranchesAreTheMeanOfSamples) {
             }
             constexpr int kDraws = 20000;
             for (int i = 0; i < kDraws; ++i) {
-                const auto s = bsdf.sample(wo, (static_cast<float>(i) + 0.5F) / kDraws, {0.5F, 0.5F}, kAllLobes, TransportMode::Radiance);
+                const auto s = bsdf.sample(wo, (static_cast<float>(i) + 0.5F) / kDraws, {0.5F, 0.5F}, kAllLobes,
+                                           TransportMode::Radiance);
                 ASSERT_TRUE(s && s->delta);
                 (s->transmitted ? sampledTransmitted : sampledReflected) += s->weight.g / kDraws;
             }

@@ -48,7 +48,8 @@ struct GroupDifference {
 using Allowance = double (*)(const std::string& group);
 
 /// Compares class by class. `floor`: share of the image's energy below which no bias counts.
-inline std::vector<GroupDifference> compareGroups(const std::vector<Image>& reference, const std::vector<Image>& measured, Allowance allowance,
+inline std::vector<GroupDifference> compareGroups(const std::vector<Image>& reference,
+                                                  const std::vector<Image>& measured, Allowance allowance,
                                                   double floor) {
     const auto a = energyByGroup(reference), b = energyByGroup(measured);
     double whole = 0.0;
@@ -59,8 +60,10 @@ inline std::vector<GroupDifference> compareGroups(const std::vector<Image>& refe
         for (const auto& [group, values] : map) ++groups[group];
     const std::vector<double> zeroA(reference.size(), 0.0), zeroB(measured.size(), 0.0);
     for (const auto& [group, count] : groups) {
-        const MeanOfSeeds x = meanOfSeeds(a.contains(group) ? a.at(group) : zeroA), y = meanOfSeeds(b.contains(group) ? b.at(group) : zeroB);
-        differences.push_back({group, x.mean, y.mean, std::sqrt(x.variance + y.variance), allowance(group) * x.mean + floor * whole});
+        const MeanOfSeeds x = meanOfSeeds(a.contains(group) ? a.at(group) : zeroA),
+                          y = meanOfSeeds(b.contains(group) ? b.at(group) : zeroB);
+        differences.push_back(
+            {group, x.mean, y.mean, std::sqrt(x.variance + y.variance), allowance(group) * x.mean + floor * whole});
     }
     return differences;
 }

@@ -15,7 +15,9 @@ namespace {
 
 using namespace testing;
 
-Scene made(const SmallScene& s, const Workers& workers) { return Scene(s.scene, s.environment, SceneOptions{}, workers); }
+Scene made(const SmallScene& s, const Workers& workers) {
+    return Scene(s.scene, s.environment, SceneOptions{}, workers);
+}
 
 class Estimators : public ::testing::TestWithParam<int> {};
 
@@ -33,7 +35,8 @@ TEST_P(Estimators, BidirectionalMeansWhatPathTracingMeans) {
     const auto a = renderSeeds(scene, path, workers), b = renderSeeds(scene, bdpt, workers);
     for (const char* layer : {"", "emission", "direct", "caustic", "indirect"}) {
         const Agreement agreement = agreementOf(valuesOf(a, 2, layer), valuesOf(b, 2, layer));
-        EXPECT_TRUE(agreement.holds(sidakLevel(35))) << small.name << ", " << (*layer == '\0' ? "all" : layer) << ": " << agreement;
+        EXPECT_TRUE(agreement.holds(sidakLevel(35)))
+            << small.name << ", " << (*layer == '\0' ? "all" : layer) << ": " << agreement;
         if (*layer == '\0') std::cout << small.name << ": " << agreement << "\n";
     }
 }
@@ -53,22 +56,25 @@ TEST(SamplingLadder, EveryRungMeansTheSameImage) {
     best.width = best.height = 16;
     const SeedValues expected = valuesOf(renderSeeds(scene, best, workers), 2);
     const std::vector<std::pair<std::string, std::string>> rungs{
-        {"path.directions", "cosine"}, {"path.directions", "uniform"},   {"path.lights", "nee"},    {"path.lights", "none"},
-        {"path.sampler", "halton"},    {"path.sampler", "independent"}, {"path.sampler", "stratified"}, {"path.roulette", "0"}};
+        {"path.directions", "cosine"},  {"path.directions", "uniform"}, {"path.lights", "nee"},
+        {"path.lights", "none"},        {"path.sampler", "halton"},     {"path.sampler", "independent"},
+        {"path.sampler", "stratified"}, {"path.roulette", "0"}};
     std::uint64_t seed = 1000;
     for (const auto& [name, value] : rungs) {
         Rendering rung = best;
         rung.samples = 128;
         rung.firstSeed = seed += 1000;
         setParameter(rung.settings, name, value);
-        if (name == "path.roulette") rung.settings.maxDepth = 12;  // an open corner: what is farther out is too little to see
+        if (name == "path.roulette")
+            rung.settings.maxDepth = 12;  // an open corner: what is farther out is too little to see
         const Agreement agreement = agreementOf(expected, valuesOf(renderSeeds(scene, rung, workers), 2));
         EXPECT_TRUE(agreement.holds(sidakLevel(24))) << name << "=" << value << ": " << agreement;
     }
 }
 
 /// Mean variance of a pixel over seeds.
-double varianceOf(const Scene& scene, Rendering what, const std::vector<std::pair<std::string, std::string>>& settings, const Workers& workers) {
+double varianceOf(const Scene& scene, Rendering what, const std::vector<std::pair<std::string, std::string>>& settings,
+                  const Workers& workers) {
     for (const auto& [name, value] : settings) setParameter(what.settings, name, value);
     const SeedValues values = valuesOf(renderSeeds(scene, what, workers), 1);
     double sum = 0.0;
@@ -88,7 +94,8 @@ TEST(SamplingLadder, VarianceFallsFromRungToRung) {
     what.width = what.height = 16;
     using Settings = std::vector<std::pair<std::string, std::string>>;
     const auto variance = [&](const Settings& s) { return varianceOf(scene, what, s, workers); };
-    const double mis = variance({}), none = variance({{"path.lights", "none"}}), nee = variance({{"path.lights", "nee"}});
+    const double mis = variance({}), none = variance({{"path.lights", "none"}}),
+                 nee = variance({{"path.lights", "nee"}});
     EXPECT_LT(mis, 0.5 * none);
     EXPECT_LT(nee, 0.5 * none);
     EXPECT_LT(none, 0.95 * variance({{"path.lights", "none"}, {"path.directions", "uniform"}}));
@@ -118,7 +125,8 @@ std::vector<Image> directByHand(const Scene& scene, const Rendering& what, Bug b
             Rgb sum(0.0F);
             for (std::uint32_t k = 0; k < what.samples; ++k) {
                 Sampler sampler(what.firstSeed + static_cast<std::uint64_t>(s), i, k);
-                const glm::vec2 corner(i % static_cast<std::size_t>(what.width), i / static_cast<std::size_t>(what.width));
+                const glm::vec2 corner(i % static_cast<std::size_t>(what.width),
+                                       i / static_cast<std::size_t>(what.width));
                 Ray ray = camera.ray(corner + sampler.next2D(), {0.5F, 0.5F}).ray;
                 Rgb throughput(1.0F);
                 for (int bounce = 0; bounce < 4; ++bounce) {
@@ -128,14 +136,17 @@ std::vector<Image> directByHand(const Scene& scene, const Rendering& what, Bug b
                     const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wo);
                     const glm::vec3 n = bsdf.geometricNormal();
                     if (bsdf.kinds() == kSpecular) {
-                        const auto next = bsdf.sample(wo, sampler.next1D(), sampler.next2D(), kAllLobes,
-                                                      bug == Bug::EtaLeftOut ? TransportMode::Flux : TransportMode::Radiance);
+                        const auto next =
+                            bsdf.sample(wo, sampler.next1D(), sampler.next2D(), kAllLobes,
+                                        bug == Bug::EtaLeftOut ? TransportMode::Flux : TransportMode::Radiance);
                         if (!next) break;
                         throughput *= next->weight;
-                        ray = Ray{offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi, std::numeric_limits<float>::infinity()};
+                        ray = Ray{offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi,
+                                  std::numeric_limits<float>::infinity()};
                         continue;
                     }
-                    const auto light = scene.lights().sample(hit->point.position, n, sampler.next1D(), sampler.next2D());
+                    const auto light =
+                        scene.lights().sample(hit->point.position, n, sampler.next1D(), sampler.next2D());
                     if (!light) break;
                     const Ray shadow = shadowRay(hit->point.position, n, light->wi, light->distance);
                     Rgb f = bsdf.eval(wo, light->wi, kAllLobes, TransportMode::Radiance) * scene.visibility(shadow);
@@ -201,15 +212,17 @@ TEST_P(ClassLedger, PhotonsCarryWhatBidirectionalPathsCarry) {
             setParameter(photon.settings, GetParam().first, GetParam().second);
             photon.samples = 48;  // lamps are met by chance
         }
-        for (const GroupDifference& d :
-             compareGroups(renderSeeds(scene, reference, workers), renderSeeds(scene, photon, workers), photonAllowance, 0.004))
-            EXPECT_TRUE(d.holds()) << small.name << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
+        for (const GroupDifference& d : compareGroups(renderSeeds(scene, reference, workers),
+                                                      renderSeeds(scene, photon, workers), photonAllowance, 0.004))
+            EXPECT_TRUE(d.holds()) << small.name << ", " << d.group << ": " << d.measured << " for " << d.expected
+                                   << " +- " << d.error;
     }
 }
 
 /// Caustics by photons, by photons and paths that meet the lamp, and by such paths alone.
 INSTANTIATE_TEST_SUITE_P(Ways, ClassLedger,
-                         ::testing::Values(std::pair{"", ""}, std::pair{"photon.chance", "on"}, std::pair{"photon.caustic_map", "off"}));
+                         ::testing::Values(std::pair{"", ""}, std::pair{"photon.chance", "on"},
+                                           std::pair{"photon.caustic_map", "off"}));
 
 TEST(PathStrings, StringsAndGroups) {
     PathString path;
@@ -256,7 +269,8 @@ TEST(TexelIrradiance, CausticInAMirrorIsTheCausticSeenFromBehindIt) {
         return b.description();
     };
     const Workers workers;
-    const Scene direct(built(false), std::nullopt, SceneOptions{}, workers), mirrored(built(true), std::nullopt, SceneOptions{}, workers);
+    const Scene direct(built(false), std::nullopt, SceneOptions{}, workers),
+        mirrored(built(true), std::nullopt, SceneOptions{}, workers);
     Rendering light{Method::Light, 12, 6};
     light.width = light.height = 16;
     light.layers = {"classes"};
@@ -266,11 +280,14 @@ TEST(TexelIrradiance, CausticInAMirrorIsTheCausticSeenFromBehindIt) {
     const SeedValues expected = valuesOf(renderSeeds(direct, light, workers), 4, "class.EDSL");
     SeedValues measured = valuesOf(renderSeeds(mirrored, reference, workers), 4, "class.ESDSL");
     for (auto& seed : measured)
-        for (std::size_t row = 0; row < 4; ++row) std::reverse(seed.begin() + static_cast<std::ptrdiff_t>(4 * row), seed.begin() + static_cast<std::ptrdiff_t>(4 * row + 4));
+        for (std::size_t row = 0; row < 4; ++row)
+            std::reverse(seed.begin() + static_cast<std::ptrdiff_t>(4 * row),
+                         seed.begin() + static_cast<std::ptrdiff_t>(4 * row + 4));
     ASSERT_GT(imageOverSeeds(expected).mean, 0.0);
     for (std::size_t i = 0; i < expected.front().size(); ++i) {
         const MeanOfSeeds a = cellOverSeeds(expected, i), b = cellOverSeeds(measured, i);
-        EXPECT_NEAR(a.mean, b.mean, 4.5 * std::sqrt(a.variance + b.variance) + 0.01 * imageOverSeeds(expected).mean) << "block " << i;
+        EXPECT_NEAR(a.mean, b.mean, 4.5 * std::sqrt(a.variance + b.variance) + 0.01 * imageOverSeeds(expected).mean)
+            << "block " << i;
     }
     const MeanOfSeeds a = imageOverSeeds(expected), b = imageOverSeeds(measured);
     EXPECT_NEAR(b.mean / a.mean, 1.0, 4.5 * std::sqrt(a.variance + b.variance) / a.mean + 0.003);
@@ -288,8 +305,9 @@ TEST(TexelIrradiance, ReferenceMeansWhatPathTracingMeans) {
     reference.method = Method::Reference;
     reference.samples = 48;
     reference.firstSeed = 300;
-    for (const GroupDifference& d : compareGroups(renderSeeds(scene, path, workers), renderSeeds(scene, reference, workers),
-                                                  [](const std::string& group) { return group == "ESDSL" ? 0.02 : 0.0; }, 0.0))
+    for (const GroupDifference& d : compareGroups(
+             renderSeeds(scene, path, workers), renderSeeds(scene, reference, workers),
+             [](const std::string& group) { return group == "ESDSL" ? 0.02 : 0.0; }, 0.0))
         EXPECT_TRUE(d.holds()) << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
 }
 

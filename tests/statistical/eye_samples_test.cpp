@@ -62,7 +62,8 @@ TEST(EyeSamples, SplitLampChainsTameGlints) {
     plain.width = plain.height = 24;
     Rendering split = plain;
     split.settings = with({}, "path.split", "on");
-    EXPECT_LT(variance(renderSeeds(scene, split, workers), "emission"), 0.5 * variance(renderSeeds(scene, plain, workers), "emission"));
+    EXPECT_LT(variance(renderSeeds(scene, split, workers), "emission"),
+              0.5 * variance(renderSeeds(scene, plain, workers), "emission"));
 }
 
 /// One pixel's noise feeds its later shares: a mean in which noisier pixels counted their samples more would be off.
@@ -77,7 +78,8 @@ TEST(EyeSamples, SharesByNoiseMeanTheSame) {
     adaptive.seeds = 24;
     adaptive.settings = with({}, "path.adaptive", "on");
     adaptive.firstSeed = 1000;
-    const Agreement agreement = agreementOf(valuesOf(renderSeeds(scene, plain, workers), 4), valuesOf(renderSeeds(scene, adaptive, workers), 4));
+    const Agreement agreement = agreementOf(valuesOf(renderSeeds(scene, plain, workers), 4),
+                                            valuesOf(renderSeeds(scene, adaptive, workers), 4));
     EXPECT_TRUE(agreement.holds(sidakLevel(1))) << agreement;
 }
 
@@ -109,7 +111,8 @@ TEST(EyeSamples, PhotonsByNoiseKeepTheBitsOverABreak) {
     const Image whole = render(scene, request, two).image;
     RenderRequest broken = request;
     broken.budget.samples = 12;
-    broken.checkpoint = std::filesystem::temp_directory_path() / ("pellucid-photons-by-noise-" + std::to_string(::getpid()));
+    broken.checkpoint =
+        std::filesystem::temp_directory_path() / ("pellucid-photons-by-noise-" + std::to_string(::getpid()));
     (void)render(scene, broken, one);
     broken.budget.samples = 60;
     broken.resume = true;

@@ -353,24 +353,29 @@ TEST(Lights, TreeOverAGlowingBallKnowsItsBrightSide) {
     constexpr int kRings = 32, kSegments = 64;
     constexpr float kRadius = 0.1F;
     const auto at = [](int ring, int segment) {
-        const float theta = kPi * static_cast<float>(ring) / kRings, phi = 2.0F * kPi * static_cast<float>(segment) / kSegments;
+        const float theta = kPi * static_cast<float>(ring) / kRings,
+                    phi = 2.0F * kPi * static_cast<float>(segment) / kSegments;
         return kRadius * glm::vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
     };
     Lights::Parts parts;
     for (int r = 0; r < kRings; ++r)
         for (int s = 0; s < kSegments; ++s) {
             if (r > 0) parts.triangles.push_back(triangle(at(r, s), at(r + 1, s), at(r, s + 1), Rgb(1.0F)));
-            if (r + 1 < kRings) parts.triangles.push_back(triangle(at(r + 1, s), at(r + 1, s + 1), at(r, s + 1), Rgb(1.0F)));
+            if (r + 1 < kRings)
+                parts.triangles.push_back(triangle(at(r + 1, s), at(r + 1, s + 1), at(r, s + 1), Rgb(1.0F)));
         }
     for (std::uint32_t i = 0; i < parts.triangles.size(); ++i) parts.triangles[i].primitive = i;
     const Lights lights(parts, nullptr, nullptr);
     const glm::vec3 normal(0.0F, 0.0F, 1.0F);
-    for (const glm::vec3& point : {glm::vec3(0.3F, 0.1F, -1.0F), glm::vec3(0.0F, 0.6F, -0.5F), glm::vec3(0.05F, 0.0F, -0.2F)}) {
+    for (const glm::vec3& point :
+         {glm::vec3(0.3F, 0.1F, -1.0F), glm::vec3(0.0F, 0.6F, -0.5F), glm::vec3(0.05F, 0.0F, -0.2F)}) {
         const Estimate e = irradiance(lights, parts, point, normal, 100000, 3);
         const double distance = static_cast<double>(glm::length(point));
-        const double expected = kPiD * std::pow(static_cast<double>(kRadius) / distance, 2.0) * static_cast<double>(-point.z) / distance;
+        const double expected =
+            kPiD * std::pow(static_cast<double>(kRadius) / distance, 2.0) * static_cast<double>(-point.z) / distance;
         EXPECT_NEAR(e.mean, expected, 4.5 * e.error + 0.005 * expected);  // of the triangles, which lie within the ball
-        EXPECT_LT(e.deviation, (distance > 5.0 * static_cast<double>(kRadius) ? 0.35 : 0.6) * expected) << e.deviation / expected;
+        EXPECT_LT(e.deviation, (distance > 5.0 * static_cast<double>(kRadius) ? 0.35 : 0.6) * expected)
+            << e.deviation / expected;
         RecordProperty("deviation at " + std::to_string(distance), std::to_string(e.deviation / expected));
     }
 }

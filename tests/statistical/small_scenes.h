@@ -91,7 +91,8 @@ inline SmallScene sky() {
     addCorner(b, coated(0.5F, 0.6F), coloured({0.6F, 0.6F, 0.2F}));
     b.sphere({0.2, 0.5, 0.3}, 0.5, 4, coated(0.4F, 0.35F), true);
     SmallScene s{"sky", b.description()};
-    s.environment = check::environmentMap(32, 16, [](const glm::dvec3& d) { return 0.4 + 0.5 * d.y + 1.2 * std::max(0.0, d.x * d.z); });
+    s.environment = check::environmentMap(
+        32, 16, [](const glm::dvec3& d) { return 0.4 + 0.5 * d.y + 1.2 * std::max(0.0, d.x * d.z); });
     return s;
 }
 

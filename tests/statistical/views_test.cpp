@@ -37,7 +37,8 @@ using namespace testing::detail;
     b.perspective({0.5, 1.0, 3.3}, {0.1, 0.6, 0}, 0.62);
     b.perspective({0.7, 1.0, 3.2}, {0.2, 0.6, 0}, 0.62);
     b.perspective({0.45, 0.5, 0.9}, {0.3, 0.1, 0.1}, 0.62);
-    for (std::size_t i = 0; i < b.description().cameras.size(); ++i) b.description().cameras[i].name = "camera " + std::to_string(i);
+    for (std::size_t i = 0; i < b.description().cameras.size(); ++i)
+        b.description().cameras[i].name = "camera " + std::to_string(i);
     b.description().contentHash = "ball in corner";
     return b.description();
 }
@@ -162,7 +163,8 @@ TEST_F(Views, AStaleFileIsRefusedWithTheReason) {
     (void)renderWith(smallRequest("camera 1", 1), "cache");
     RenderRequest other = smallRequest("camera 1", 1);
     other.settings.gatherRays = 200;
-    EXPECT_NE(refusal(scene_, other, "cache").find("cache.rays=128 there, 200 here"), std::string::npos) << refusal(scene_, other, "cache");
+    EXPECT_NE(refusal(scene_, other, "cache").find("cache.rays=128 there, 200 here"), std::string::npos)
+        << refusal(scene_, other, "cache");
     other = smallRequest("camera 1", 1);
     other.settings.maxDepth = 3;
     EXPECT_NE(refusal(scene_, other, "cache").find("path.max_depth=0 there, 3 here"), std::string::npos);
@@ -212,7 +214,8 @@ TEST_F(Views, ADamagedFileIsRefused) {
         camera.orthographic = true;
         camera.xmag = camera.ymag = 0.6;
         const double pixel = 2.0 * camera.ymag / 36.0;
-        camera.toWorld = glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(4 * pixel * i, 1.5, 0, 1));
+        camera.toWorld = glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 1, 0, 0),
+                                    glm::dvec4(4 * pixel * i, 1.5, 0, 1));
         b.description().cameras.push_back(camera);
     }
     b.description().contentHash = "shifted views";
@@ -241,7 +244,8 @@ TEST_F(Views, ADamagedFileIsRefused) {
     const int value = a.channel("G"), variance = a.channel("variance.G");
     for (int y = 0; y < a.height(); ++y)
         for (int x = shift; x < a.width(); ++x) {
-            const auto pixel = static_cast<std::size_t>(y * a.width() + x), same = pixel - static_cast<std::size_t>(shift);
+            const auto pixel = static_cast<std::size_t>(y * a.width() + x),
+                       same = pixel - static_cast<std::size_t>(shift);
             sum += std::pow(static_cast<double>(a.at(pixel, value)) - static_cast<double>(b.at(same, value)), 2.0);
             noise += static_cast<double>(a.at(pixel, variance)) + static_cast<double>(b.at(same, variance));
         }
@@ -253,10 +257,13 @@ TEST_F(Views, AFlythroughDoesNotFlicker) {
     RenderRequest request = smallRequest("", 16);
     request.layers = {"variance"};
     std::vector<RenderResult> frames;
-    renderViews(scene, request, {"frame 0", "frame 1", "frame 2"}, [&](std::size_t i, RenderResult result) {
-        EXPECT_EQ(i, frames.size());
-        frames.push_back(std::move(result));
-    }, workers_);
+    renderViews(
+        scene, request, {"frame 0", "frame 1", "frame 2"},
+        [&](std::size_t i, RenderResult result) {
+            EXPECT_EQ(i, frames.size());
+            frames.push_back(std::move(result));
+        },
+        workers_);
     ASSERT_EQ(frames.size(), 3U);
     for (const RenderResult& frame : frames) {
         EXPECT_EQ(frame.record.reuse.recordsReused, frames[0].record.reuse.recordsReused);
@@ -268,7 +275,8 @@ TEST_F(Views, AFlythroughDoesNotFlicker) {
         own.camera = camera;
         return render(scene, own, workers_).image;
     };
-    const double shared = flicker(frames[0].image, frames[1].image, 4), apart = flicker(alone("frame 0"), alone("frame 1"), 4);
+    const double shared = flicker(frames[0].image, frames[1].image, 4),
+                 apart = flicker(alone("frame 0"), alone("frame 1"), 4);
     EXPECT_LT(shared, 0.5 * apart) << shared << " against " << apart;
     EXPECT_LT(differenceByNoise(frames[0].image, frames[1].image, 4), 1.3);
     EXPECT_LT(differenceByNoise(frames[1].image, frames[2].image, 4), 1.3);
@@ -290,9 +298,12 @@ TEST_F(Views, AFlythroughReadsAndFillsTheCacheFile) {
 }
 
 TEST(ViewsFile, LinesBecomeCameras) {
-    const auto views = parseViews("# a path\n\neye 0 1 4 target 0 1 0\r\n  target 1 1 1 fov 90 eye 1 1 3 up 1 0 0 # lies on its side\n", "path.txt", 0.5);
+    const auto views = parseViews(
+        "# a path\n\neye 0 1 4 target 0 1 0\r\n  target 1 1 1 fov 90 eye 1 1 3 up 1 0 0 # lies on its side\n",
+        "path.txt", 0.5);
     ASSERT_EQ(views.size(), 2U);
-    EXPECT_EQ(views[0].toWorld, glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0), glm::dvec4(0, 1, 4, 1)));
+    EXPECT_EQ(views[0].toWorld, glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0),
+                                           glm::dvec4(0, 1, 4, 1)));
     EXPECT_EQ(views[0].verticalFov, 0.5);
     EXPECT_EQ(views[1].toWorld[1], glm::dvec4(1, 0, 0, 0));
     EXPECT_EQ(views[1].toWorld[0], glm::dvec4(0, -1, 0, 0));
@@ -309,18 +320,18 @@ TEST(ViewsFile, WhatCannotBeIsNamedWithItsLine) {
         }
         return "not refused";
     };
-    for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
-             {"", "no view"},
-             {"# nothing", "no view"},
-             {"eye 0 1 4 target 0 1 0\neye 1 2 3", "line 2"},
-             {"target 1 2 3", "the eye is missing"},
-             {"eye 0 1 x target 0 1 0", "'x'"},
-             {"eye 0 1 4 target 0 1", "''"},
-             {"eye 0 1 4 target 0 1 nan", "'nan'"},
-             {"eye 0 1 4 target 0 1 4", "the same point"},
-             {"eye 0 1 4 target 0 -1 4", "up points along"},
-             {"eye 0 1 4 target 0 1 0 fov 180", "180"},
-             {"eye 0 1 4 target 0 1 0 fovy 30", "'fovy'"}})
+    for (const auto& [text, words] :
+         std::vector<std::pair<std::string, std::string>>{{"", "no view"},
+                                                          {"# nothing", "no view"},
+                                                          {"eye 0 1 4 target 0 1 0\neye 1 2 3", "line 2"},
+                                                          {"target 1 2 3", "the eye is missing"},
+                                                          {"eye 0 1 x target 0 1 0", "'x'"},
+                                                          {"eye 0 1 4 target 0 1", "''"},
+                                                          {"eye 0 1 4 target 0 1 nan", "'nan'"},
+                                                          {"eye 0 1 4 target 0 1 4", "the same point"},
+                                                          {"eye 0 1 4 target 0 -1 4", "up points along"},
+                                                          {"eye 0 1 4 target 0 1 0 fov 180", "180"},
+                                                          {"eye 0 1 4 target 0 1 0 fovy 30", "'fovy'"}})
         EXPECT_NE(refusal(text).find(words), std::string::npos) << text << ": " << refusal(text);
 }
 
@@ -367,7 +378,8 @@ TEST_F(Views, PointCloudsStandInTheScenesOwnMetres) {
     EXPECT_EQ(ply.properties.size(), 13U);
     for (const std::vector<float>& v : ply.vertices) {
         const glm::dvec3 p = (glm::dvec3(v[0], v[1], v[2]) - moved) / scale;
-        EXPECT_TRUE(p.x >= -1.01 && p.x <= 1.01 && p.y >= -0.01 && p.y <= 2.01 && p.z >= -1.01 && p.z <= 1.01) << p.x << " " << p.y << " " << p.z;
+        EXPECT_TRUE(p.x >= -1.01 && p.x <= 1.01 && p.y >= -0.01 && p.y <= 2.01 && p.z >= -1.01 && p.z <= 1.01)
+            << p.x << " " << p.y << " " << p.z;
         EXPECT_GT(v[9], 0.0F);
     }
     const Ply photons = readPly(bytesOf(path("points") / "caustic-photons.ply"));
@@ -382,7 +394,8 @@ TEST_F(Views, PointCloudsStandInTheScenesOwnMetres) {
         for (const std::vector<float>& v : cloud.vertices) sum += static_cast<double>(v[10]);
         return sum;
     };
-    EXPECT_NEAR(flux(photons) / flux(readPly(bytesOf(path("small") / "caustic-photons.ply"))) / (scale * scale), 1.0, 0.05);
+    EXPECT_NEAR(flux(photons) / flux(readPly(bytesOf(path("small") / "caustic-photons.ply"))) / (scale * scale), 1.0,
+                0.05);
 }
 
 }  // namespace

@@ -44,8 +44,10 @@ namespace {
     return b.description();
 }
 
-[[nodiscard]] CausticLink find(const std::vector<CausticLink>& links, const std::string& lamp, const std::string& caster) {
-    const auto it = std::ranges::find_if(links, [&](const CausticLink& l) { return l.lamp == lamp && l.caster == caster; });
+[[nodiscard]] CausticLink find(const std::vector<CausticLink>& links, const std::string& lamp,
+                               const std::string& caster) {
+    const auto it =
+        std::ranges::find_if(links, [&](const CausticLink& l) { return l.lamp == lamp && l.caster == caster; });
     EXPECT_NE(it, links.end()) << lamp << " -> " << caster;
     return it == links.end() ? CausticLink{} : *it;
 }
@@ -63,7 +65,8 @@ TEST(CausticLinks, EachPairHasItsCountsAndItsReason) {
         EXPECT_GE(l.emitted, l.hit);
         EXPECT_EQ(l.reason, "");
     }
-    EXPECT_TRUE(find(plan.causticLinks, "lamp", "brushed").reason.starts_with("too rough to cast: 0.6 is above surface.cast_roughness 0.3"));
+    EXPECT_TRUE(find(plan.causticLinks, "lamp", "brushed")
+                    .reason.starts_with("too rough to cast: 0.6 is above surface.cast_roughness 0.3"));
     EXPECT_GT(find(plan.causticLinks, "lamp", "brushed").hit, 0U);
     EXPECT_EQ(find(plan.causticLinks, "wrong way", "ball").reason, "behind the lamp: it shines the other way");
     EXPECT_EQ(find(plan.causticLinks, "aside", "ball").reason, "outside of the spot's cone");
@@ -118,7 +121,8 @@ TEST(CausticLinks, CountsAreThoseOfThePassAtAnyNumberOfThreads) {
 
 TEST(CausticLinks, TextAndJsonSumTheRest) {
     RenderRecord record;
-    for (std::uint64_t i = 0; i < 300; ++i) record.causticLinks.push_back({"lamp " + std::to_string(i), "ball", 10, 3, 2, 1, ""});
+    for (std::uint64_t i = 0; i < 300; ++i)
+        record.causticLinks.push_back({"lamp " + std::to_string(i), "ball", 10, 3, 2, 1, ""});
     const RecordContext context;
     const auto json = nlohmann::json::parse(planJson(record, context)).at("caustics");
     EXPECT_EQ(json.size(), 256U);
@@ -135,7 +139,8 @@ TEST(PhotonLayers, PhotonsStandWhereKernelsMeetThem) {
     RenderRequest request = small();
     request.layers = {"photons", "radius"};
     const Image image = render(scene, request, workers).image;
-    const int photons = image.channel("photons.Y"), radius = image.channel("radius.Y"), caustic = image.channel("caustic.G");
+    const int photons = image.channel("photons.Y"), radius = image.channel("radius.Y"),
+              caustic = image.channel("caustic.G");
     double most = 0.0;
     for (std::size_t i = 0; i < image.pixels(); ++i) {
         most = std::max(most, static_cast<double>(image.at(i, photons)));
@@ -158,7 +163,8 @@ TEST(PhotonMemory, SizesThePassesAndSaysSo) {
     const RenderRecord record = render(scene, request, workers).record;
     for (const std::string pass : {"caustic photons", "global photons"}) {
         const bool told = std::ranges::any_of(record.decisions, [&](const Decision& d) {
-            return d.name == pass && d.choice == "fewer" && d.reason.find("100000000 paths wanted") != std::string::npos;
+            return d.name == pass && d.choice == "fewer" &&
+                   d.reason.find("100000000 paths wanted") != std::string::npos;
         });
         EXPECT_TRUE(told) << pass;
         const auto stage = std::ranges::find(record.stages, pass, &StageRecord::name);

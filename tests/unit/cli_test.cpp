@@ -154,14 +154,16 @@ TEST_F(Cli, BrokenScenes) {
     b.node({{"mesh", b.mesh({{"attributes", {{"POSITION", positions}}}})}});
     expectRefused(b.glb(), "not finite");
     b = whole;
-    b.json["images"] = test::Json::array({{{"bufferView", b.view(std::vector<std::uint8_t>(64, 7))}, {"mimeType", "image/png"}}});
+    b.json["images"] =
+        test::Json::array({{{"bufferView", b.view(std::vector<std::uint8_t>(64, 7))}, {"mimeType", "image/png"}}});
     b.json["textures"] = test::Json::array({{{"source", 0}}});
     b.json["materials"] = test::Json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
     test::primitive(b)["material"] = 0;
     expectRefused(b.glb(), "images[0]");
     std::ofstream(path("map.exr")) << "no image";
     std::ofstream(path("whole.glb"), std::ios::binary) << text(whole.glb());
-    expectError("render '" + path("whole.glb") + "' -o '" + path("out.exr") + "' --env '" + path("map.exr") + "'", 2, "map.exr");
+    expectError("render '" + path("whole.glb") + "' -o '" + path("out.exr") + "' --env '" + path("map.exr") + "'", 2,
+                "map.exr");
     expectError("render '" + path("whole.glb") + "' -o '" + path("out.exr") + "'", 2, "no light");
 }
 

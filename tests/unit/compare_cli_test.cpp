@@ -95,7 +95,8 @@ TEST(CompareStatistics, NoiseOfAColouredReference) {
     const double floor = 0.01 * std::pow((1.0 + 0.5 + 0.02) / 3.0, 2);
     double expected = 0.0;
     for (const double r : {1.0, 0.5, 0.02}) expected += 0.01 * r * r / (r * r + floor) / 3.0;
-    Image grey(2, 1, {"R", "G", "B", "variance.Y"}), colours(2, 1, {"R", "G", "B", "variance.R", "variance.G", "variance.B"});
+    Image grey(2, 1, {"R", "G", "B", "variance.Y"}),
+        colours(2, 1, {"R", "G", "B", "variance.R", "variance.G", "variance.B"});
     for (std::size_t p = 0; p < 2; ++p) {
         grey.setRgb(p, gold);
         grey.at(p, 3) = static_cast<float>(0.01 * luminance * luminance);
@@ -140,8 +141,8 @@ TEST(CompareReport, StaysBelowItsSize) {
 class CompareCli : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  ("pellucid_compare_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
+        folder_ = fs::path(testing::TempDir()) / ("pellucid_compare_" + std::to_string(getpid()) + "_" +
+                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }
@@ -225,8 +226,8 @@ TEST_F(CompareCli, KilledAndResumed) {
                                   "' --methods path --times 0.2 --seeds 6 --size 16x12 --reference-time 0.3 --quiet";
     std::map<fs::path, fs::file_time_type> finished;
     for (const char* signal : {"KILL", "INT"}) {
-        const std::string command =
-            std::string("timeout -s ") + signal + " 0.6 '" PELLUCID_BINARY "' compare " + arguments + " >/dev/null 2>&1";
+        const std::string command = std::string("timeout -s ") + signal + " 0.6 '" PELLUCID_BINARY "' compare " +
+                                    arguments + " >/dev/null 2>&1";
         static_cast<void>(std::system(command.c_str()));
         for (const auto& [file, written] : finished) EXPECT_EQ(fs::last_write_time(file), written) << file;
         if (!fs::exists(study / "runs")) continue;  // the machine is busy: it never got so far
@@ -247,7 +248,8 @@ TEST_F(CompareCli, InfiniteErrorsStayInfinite) {
     const fs::path reference = folder_ / "black.exr", study = folder_ / "study";
     writeExr(reference, Image(16, 12, {"R", "G", "B"}), {});
     const std::string command = "'" + scene() + "' -o '" + study.string() +
-                                "' --methods path --times 0.1,0.10001 --seeds 1 --reference '" + reference.string() + "'";
+                                "' --methods path --times 0.1,0.10001 --seeds 1 --reference '" + reference.string() +
+                                "'";
     for (int time = 0; time < 2; ++time) {
         ASSERT_EQ(run(command), 0) << read(folder_ / "stderr");
         const Json curves = Json::parse(read(study / "curves.json"));

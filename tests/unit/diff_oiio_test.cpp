@@ -51,7 +51,8 @@ TEST(DiffCli, AgreesWithOiiotool) {
         const std::string::size_type place = told.find("RMS error = ");
         ASSERT_NE(place, std::string::npos) << told;
         const double expected = std::stod(told.substr(place + 12));
-        const auto json = nlohmann::json::parse(outputOf("'" PELLUCID_BINARY "' diff --json '" + reference + "' '" + other + "'"));
+        const auto json =
+            nlohmann::json::parse(outputOf("'" PELLUCID_BINARY "' diff --json '" + reference + "' '" + other + "'"));
         const nlohmann::json& row = json.is_array() ? json.at(0) : json.at("images").at(0);
         EXPECT_NEAR(row.at("rmse").get<double>(), expected, 2e-5 * expected) << name;
     }

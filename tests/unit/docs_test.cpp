@@ -30,7 +30,8 @@ std::vector<fs::path> filesUnder(const std::vector<std::string>& folders, const 
     std::vector<fs::path> files;
     for (const std::string& folder : folders)
         for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder))
-            if (entry.is_regular_file() && extensions.contains(entry.path().extension().string())) files.push_back(entry.path());
+            if (entry.is_regular_file() && extensions.contains(entry.path().extension().string()))
+                files.push_back(entry.path());
     std::ranges::sort(files);
     return files;
 }

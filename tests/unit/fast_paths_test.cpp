@@ -52,8 +52,10 @@ TEST(FastPaths, PhotonTreeIsTheSumOverAllPhotons) {
         const float radius = random.between(0.002F, 0.3F);
         glm::dvec3 sum(0.0);
         for (const Photon& p : photons) {
-            const double d2 = static_cast<double>(glm::dot(p.position - at, p.position - at)), r2 = static_cast<double>(radius) * static_cast<double>(radius);
-            if (d2 < r2 && p.normal.z > 0.0F && p.position.z == 0.0F) sum += glm::dvec3(p.flux) * (1.0 - d2 / r2) * 2.0 / (kPiD * r2);
+            const double d2 = static_cast<double>(glm::dot(p.position - at, p.position - at)),
+                         r2 = static_cast<double>(radius) * static_cast<double>(radius);
+            if (d2 < r2 && p.normal.z > 0.0F && p.position.z == 0.0F)
+                sum += glm::dvec3(p.flux) * (1.0 - d2 / r2) * 2.0 / (kPiD * r2);
         }
         const Rgb found = map.irradiance(at, kUp, kUp, lobe, radius);
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(static_cast<double>(found[c]), sum[c], 2e-4 * sum[c] + 1e-3) << query;
@@ -106,7 +108,8 @@ TEST(FastPaths, CacheIndexFindsExactlyTheRecordsThatSpeak) {
 struct SlowHit {
     double t = std::numeric_limits<double>::infinity(), inside = 0.0;
 };
-[[nodiscard]] std::optional<SlowHit> hitTriangle(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+[[nodiscard]] std::optional<SlowHit> hitTriangle(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b,
+                                                 const glm::dvec3& c) {
     const glm::dvec3 d(ray.direction), ab = b - a, ac = c - a, p = glm::cross(d, ac);
     const double determinant = glm::dot(ab, p);
     if (determinant == 0.0) return std::nullopt;
@@ -118,7 +121,9 @@ struct SlowHit {
 
 TEST(FastPaths, RayTracerFindsWhatAllTrianglesOneByOneSay) {
     Numbers random(3);
-    const auto point = [&random](float size) { return glm::vec3(random.between(-size, size), random.between(-size, size), random.between(-size, size)); };
+    const auto point = [&random](float size) {
+        return glm::vec3(random.between(-size, size), random.between(-size, size), random.between(-size, size));
+    };
     std::vector<Mesh> meshes(2);
     for (Mesh& mesh : meshes)
         for (std::uint32_t i = 0; i < 300; ++i) {
@@ -139,7 +144,9 @@ TEST(FastPaths, RayTracerFindsWhatAllTrianglesOneByOneSay) {
         double margin = std::numeric_limits<double>::infinity();  // of all that lies on the way: edges may round
         for (std::size_t g = 0; g < meshOf.size(); ++g)
             for (const glm::uvec3& t : meshes[meshOf[g]].triangles) {
-                const auto corner = [&](std::uint32_t v) { return glm::dvec3(glm::dmat4(toScene[g]) * glm::dvec4(meshes[meshOf[g]].positions[v], 1.0)); };
+                const auto corner = [&](std::uint32_t v) {
+                    return glm::dvec3(glm::dmat4(toScene[g]) * glm::dvec4(meshes[meshOf[g]].positions[v], 1.0));
+                };
                 const auto hit = hitTriangle(ray, corner(t.x), corner(t.y), corner(t.z));
                 if (!hit || hit->t <= 0.0) continue;
                 margin = std::min({margin, hit->inside, hit->t});
@@ -178,8 +185,10 @@ TEST(FastPaths, RayTracerFindsWhatAllTrianglesOneByOneSay) {
     constexpr std::uint32_t kRings = 24, kColumns = 48;
     for (std::uint32_t j = 0; j <= kRings; ++j)
         for (std::uint32_t i = 0; i <= kColumns; ++i) {
-            const double phi = i == kColumns ? 0.0 : 2.0 * kPiD * i / kColumns, theta = kPiD * j / kRings, s = j == 0 || j == kRings ? 0.0 : std::sin(theta);
-            sphere.positions.emplace_back(glm::dvec3(0.3 * s * std::cos(phi), 0.3 * s * std::sin(phi), 0.6 + 0.3 * std::cos(theta)));
+            const double phi = i == kColumns ? 0.0 : 2.0 * kPiD * i / kColumns, theta = kPiD * j / kRings,
+                         s = j == 0 || j == kRings ? 0.0 : std::sin(theta);
+            sphere.positions.emplace_back(
+                glm::dvec3(0.3 * s * std::cos(phi), 0.3 * s * std::sin(phi), 0.6 + 0.3 * std::cos(theta)));
         }
     for (std::uint32_t j = 0; j < kRings; ++j)
         for (std::uint32_t i = 0; i < kColumns; ++i) {
@@ -204,7 +213,8 @@ TEST(FastPaths, GuidedEmissionBringsTheSameFluxAsUnguided) {
     const auto stored = [&](const EmissionGuide& guide, std::uint64_t pass, std::uint32_t paths) {
         return traceCausticPhotons(scene, guide, {5, pass, paths}, nullptr, workers).energy.stored;
     };
-    const EmissionGuide guided(scene.lights(), traceCausticPhotons(scene, unguided, {5, 1000, 20'000}, nullptr, workers).useful);
+    const EmissionGuide guided(scene.lights(),
+                               traceCausticPhotons(scene, unguided, {5, 1000, 20'000}, nullptr, workers).useful);
     const auto figures = [&](const EmissionGuide& guide, std::uint64_t first) {
         double mean = 0.0, square = 0.0;
         for (std::uint64_t i = 0; i < kPasses; ++i) {
@@ -217,7 +227,8 @@ TEST(FastPaths, GuidedEmissionBringsTheSameFluxAsUnguided) {
     const auto [plainMean, plainVariance] = figures(unguided, 0);
     const auto [guidedMean, guidedVariance] = figures(guided, 100);
     EXPECT_GT(plainMean, 0.0);
-    EXPECT_LT(std::fabs(plainMean - guidedMean), 4.5 * std::sqrt(plainVariance + guidedVariance)) << plainMean << " " << guidedMean;
+    EXPECT_LT(std::fabs(plainMean - guidedMean), 4.5 * std::sqrt(plainVariance + guidedVariance))
+        << plainMean << " " << guidedMean;
     EXPECT_LT(guidedVariance, 0.25 * plainVariance);  // what it is for
 }
 

@@ -138,7 +138,8 @@ TEST(GltfMaterials, PrimitivesWithoutMaterialGetTheDefault) {
 
 /// A picture of 2 x 1 pixels, red and green, as the bytes of a PNG.
 std::vector<std::byte> smallPng() {
-    const std::filesystem::path file = std::filesystem::temp_directory_path() / ("pellucid_gltf_" + std::to_string(getpid()) + ".png");
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("pellucid_gltf_" + std::to_string(getpid()) + ".png");
     Image image(2, 1, {"R", "G", "B"});
     image.setRgb(0, {1, 0, 0});
     image.setRgb(1, {0, 1, 0});

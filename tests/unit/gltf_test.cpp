@@ -443,7 +443,8 @@ class GltfFiles : public testing::Test {
 protected:
     GltfFiles() {
         const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder = std::filesystem::temp_directory_path() / ("pellucid_gltf_" + std::to_string(getpid()) + "_" + info->name());
+        folder =
+            std::filesystem::temp_directory_path() / ("pellucid_gltf_" + std::to_string(getpid()) + "_" + info->name());
         std::filesystem::remove_all(folder);
         std::filesystem::create_directories(folder / "sub");
     }

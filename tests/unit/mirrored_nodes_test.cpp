@@ -19,10 +19,9 @@ using test::primitive;
 /// A square in the plane z = 0 that shines towards +z, u along +x, v along -y as in an image; its normals lean.
 GltfBuilder lamp(bool tangents) {
     GltfBuilder b;
-    Json attributes = {
-        {"POSITION", b.floats({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3")},
-        {"NORMAL", b.floats({0.6F, 0, 0.8F, 0.6F, 0, 0.8F, 0.6F, 0, 0.8F, 0.6F, 0, 0.8F}, "VEC3")},
-        {"TEXCOORD_0", b.floats({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2")}};
+    Json attributes = {{"POSITION", b.floats({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3")},
+                       {"NORMAL", b.floats({0.6F, 0, 0.8F, 0.6F, 0, 0.8F, 0.6F, 0, 0.8F, 0.6F, 0, 0.8F}, "VEC3")},
+                       {"TEXCOORD_0", b.floats({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2")}};
     if (tangents) {
         std::vector<float> values;
         for (int i = 0; i < 4; ++i) values.insert(values.end(), {0.8F, 0, -0.6F, 1});
@@ -63,7 +62,8 @@ View look(const Scene& scene, float side) {
     if (!hit) return {};
     const glm::vec3 wo(0, 0, side);
     const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wo);
-    return {scene.surfaces().emittedRadiance(hit->point, wo), hit->point.geometricNormal, bsdf.shadingNormal(), bsdf.backSide()};
+    return {scene.surfaces().emittedRadiance(hit->point, wo), hit->point.geometricNormal, bsdf.shadingNormal(),
+            bsdf.backSide()};
 }
 
 void expectNear(const glm::vec3& actual, const glm::vec3& expected, const char* what) {
@@ -72,7 +72,8 @@ void expectNear(const glm::vec3& actual, const glm::vec3& expected, const char* 
 
 /// The mapped normal of the unmoved lamp: texel x tangent + texel y bitangent + texel z normal, where t, b, n are
 /// (0.8, 0, -0.6), (0, 1, 0), (0.6, 0, 0.8).
-const glm::vec3 kMapped = glm::normalize(0.28F * glm::vec3(0.8F, 0, -0.6F) + 0.48F * glm::vec3(0, 1, 0) + 0.83F * glm::vec3(0.6F, 0, 0.8F));
+const glm::vec3 kMapped =
+    glm::normalize(0.28F * glm::vec3(0.8F, 0, -0.6F) + 0.48F * glm::vec3(0, 1, 0) + 0.83F * glm::vec3(0.6F, 0, 0.8F));
 
 /// `mirror`: the scale of the node; `front`: the side that the lamp shines to after it.
 void expectMirrorImage(GltfBuilder b, const glm::vec3& mirror, float front) {

@@ -48,7 +48,8 @@ TEST(NoSilentTrouble, NonFiniteSamplesAreCountedWithPixelAndSample) {
     good[PathClass::Direct] = Rgb(1.0F);
     bad[PathClass::Caustic] = Rgb(0.0F, std::numeric_limits<float>::quiet_NaN(), 0.0F);
     for (std::uint32_t s = 0; s < 5; ++s) {
-        for (std::size_t p = 0; p < film.pixels(); ++p) film.add(p, s, (p == 6 && s >= 2) || (p == 9 && s == 1) ? bad : good, FirstHit{});
+        for (std::size_t p = 0; p < film.pixels(); ++p)
+            film.add(p, s, (p == 6 && s >= 2) || (p == 9 && s == 1) ? bad : good, FirstHit{});
         film.countSamples(1);
     }
     const NonFinite found = film.nonfinite();
@@ -78,7 +79,8 @@ TEST(NoSilentTrouble, ReplayedSamplesAreThoseOfTheRender) {
                 EXPECT_EQ(replay.vertices.front().throughput, Rgb(1.0F));
             }
             const auto pixel = static_cast<std::size_t>(y * 12 + x);
-            EXPECT_NEAR(mean, static_cast<double>(image.at(pixel, image.channel("G"))), 1e-5 * (mean + 1e-6)) << x << "," << y;
+            EXPECT_NEAR(mean, static_cast<double>(image.at(pixel, image.channel("G"))), 1e-5 * (mean + 1e-6))
+                << x << "," << y;
         }
     }
     const SampleReplay both = replaySample(scene, smallRequest(Method::Bdpt, 1), 5, 5, 0, workers);
@@ -106,7 +108,8 @@ TEST(NoSilentTrouble, EnergyOfEachPhotonPassIsAccountedFor) {
 
 TEST(NoSilentTrouble, BreakdownsAreFoundWhereTheyAre) {
     Sweep sweep;
-    for (const auto& [value, path, photon] : {std::tuple(1.0, 0.01, 0.2), std::tuple(0.1, 0.02, 0.2), std::tuple(0.01, 0.4, 0.2)}) {
+    for (const auto& [value, path, photon] :
+         {std::tuple(1.0, 0.01, 0.2), std::tuple(0.1, 0.02, 0.2), std::tuple(0.01, 0.4, 0.2)}) {
         SweepStep step;
         step.value = value;
         step.by[0].error = path;
@@ -124,14 +127,15 @@ TEST(NoSilentTrouble, BreakdownsAreFoundWhereTheyAre) {
 class Command : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) / (std::string("pellucid_trouble_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        folder_ = fs::path(testing::TempDir()) /
+                  (std::string("pellucid_trouble_") + testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }
     void TearDown() override { fs::remove_all(folder_); }
     [[nodiscard]] int run(const std::string& arguments) const {
-        const int status = std::system(("'" PELLUCID_BINARY "' " + arguments + " >'" + (folder_ / "stdout").string() + "' 2>'" +
-                                        (folder_ / "stderr").string() + "' </dev/null")
+        const int status = std::system(("'" PELLUCID_BINARY "' " + arguments + " >'" + (folder_ / "stdout").string() +
+                                        "' 2>'" + (folder_ / "stderr").string() + "' </dev/null")
                                            .c_str());
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
@@ -146,7 +150,8 @@ TEST_F(Command, DebugSamplePrintsThePath) {
     EXPECT_EQ(run("render '" + ringFile() + "' --size 12x9 --method path --debug-sample 5,5,2"), 0) << read("stderr");
     const std::string text = read("stdout");
     EXPECT_EQ(text.find("pixel 5,5 of 12x9, sample 2, seed 0, method path"), 0U);
-    for (const char* word : {"  1  at ", "material", "throughput 1 1 1", "direct", "radiance"}) EXPECT_NE(text.find(word), std::string::npos) << word;
+    for (const char* word : {"  1  at ", "material", "throughput 1 1 1", "direct", "radiance"})
+        EXPECT_NE(text.find(word), std::string::npos) << word;
     EXPECT_EQ(run("render '" + ringFile() + "' --size 12x9 --debug-sample 12,0,0"), 1);
     EXPECT_EQ(run("render '" + ringFile() + "' --debug-sample 1,2"), 1);
     EXPECT_EQ(run("render '" + ringFile() + "'"), 1);
@@ -155,7 +160,10 @@ TEST_F(Command, DebugSamplePrintsThePath) {
 
 TEST_F(Command, RecordHoldsTheEnergyOfEachPass) {
     const std::string record = (folder_ / "record.json").string();
-    ASSERT_EQ(run("render '" + ringFile() + "' -o '" + (folder_ / "a.exr").string() + "' --size 12x9 --spp 2 --record '" + record + "'"), 0) << read("stderr");
+    ASSERT_EQ(run("render '" + ringFile() + "' -o '" + (folder_ / "a.exr").string() +
+                  "' --size 12x9 --spp 2 --record '" + record + "'"),
+              0)
+        << read("stderr");
     const nlohmann::json json = nlohmann::json::parse(read("record.json"));
     int accounts = 0;
     for (const auto& stage : json.at("stages")) {
@@ -163,7 +171,8 @@ TEST_F(Command, RecordHoldsTheEnergyOfEachPass) {
         ++accounts;
         const auto& e = stage.at("energy");
         double sum = 0.0;
-        for (const char* sink : {"escaped", "absorbed", "stored", "left_to_others", "roulette", "dropped"}) sum += e.at(sink).get<double>();
+        for (const char* sink : {"escaped", "absorbed", "stored", "left_to_others", "roulette", "dropped"})
+            sum += e.at(sink).get<double>();
         EXPECT_NEAR(sum, e.at("emitted").get<double>(), 1e-6 * sum);
     }
     EXPECT_GE(accounts, 1);

@@ -14,7 +14,8 @@ namespace {
 using namespace kernel_shape;
 
 struct Moments {
-    double mass = 0.0, second = 0.0, square = 0.0;  ///< int K dA, int K x^2 dA, pi int K^2 dA over the unit disc, K / pi the density
+    double mass = 0.0, second = 0.0,
+           square = 0.0;  ///< int K dA, int K x^2 dA, pi int K^2 dA over the unit disc, K / pi the density
 };
 
 template <class Shape>
@@ -22,7 +23,8 @@ template <class Shape>
     constexpr int kSteps = 20000;
     Moments m;
     for (int i = 0; i < kSteps; ++i) {
-        const double r = (i + 0.5) / kSteps, k = static_cast<double>(Shape::kScale * Shape::shape(static_cast<float>(r * r)));
+        const double r = (i + 0.5) / kSteps,
+                     k = static_cast<double>(Shape::kScale * Shape::shape(static_cast<float>(r * r)));
         const double dt = 2.0 * r / kSteps;
         m.mass += k * dt;
         m.second += k * 0.5 * r * r * dt;
@@ -74,7 +76,8 @@ TEST_P(Kernels, AnEvenFieldIsEvenAndWithoutBias) {
     for (const float radius : {0.3F, 0.7F}) {
         float blur = 1.0F;
         int photons = 0;
-        const Rgb e = map.irradiance({0.013F, -0.021F, 0.0F}, up, up, DiffuseLobe{Rgb(1.0F)}, radius, &blur, -1.0F, &photons);
+        const Rgb e =
+            map.irradiance({0.013F, -0.021F, 0.0F}, up, up, DiffuseLobe{Rgb(1.0F)}, radius, &blur, -1.0F, &photons);
         EXPECT_NEAR(photons, kPiD * static_cast<double>(radius * radius) / (0.008 * 0.008), 100.0);
         EXPECT_NEAR(e.g, 2.0F, 0.008F) << radius;
         EXPECT_NEAR(blur, 0.0F, 0.03F) << radius;
@@ -93,8 +96,10 @@ TEST_P(Kernels, BiasOfACurvedFieldAndItsEstimateAreTheSecondMoment) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Kernels,
-                         ::testing::Values(std::pair{PhotonKernel::Epanechnikov, 1.0 / 6.0}, std::pair{PhotonKernel::Uniform, 1.0 / 4.0},
-                                           std::pair{PhotonKernel::Cone, 3.0 / 20.0}, std::pair{PhotonKernel::Biweight, 1.0 / 8.0}));
+                         ::testing::Values(std::pair{PhotonKernel::Epanechnikov, 1.0 / 6.0},
+                                           std::pair{PhotonKernel::Uniform, 1.0 / 4.0},
+                                           std::pair{PhotonKernel::Cone, 3.0 / 20.0},
+                                           std::pair{PhotonKernel::Biweight, 1.0 / 8.0}));
 
 }  // namespace
 }  // namespace pellucid

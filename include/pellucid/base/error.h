@@ -14,7 +14,10 @@ enum class ErrorKind { Usage = 1, BadInput = 2, CannotFinish = 3, CheckFailed = 
 class Error : public std::exception {
 public:
     Error(ErrorKind kind, std::string what, std::string where, std::string mend)
-        : kind_(kind), what_(std::move(what)), where_(std::move(where)), mend_(std::move(mend)),
+        : kind_(kind),
+          what_(std::move(what)),
+          where_(std::move(where)),
+          mend_(std::move(mend)),
           message_(what_ + " (" + where_ + "): " + mend_) {}
 
     [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }

@@ -7,8 +7,8 @@
 namespace pellucid {
 
 struct ProgressReport {
-    std::string_view stage;    ///< e.g. "cache", "eye pass"
-    double fraction = 0.0;     ///< of the whole job, 0..1
+    std::string_view stage;  ///< e.g. "cache", "eye pass"
+    double fraction = 0.0;   ///< of the whole job, 0..1
     double secondsElapsed = 0.0;
     double secondsLeft = -1.0;  ///< negative: not known yet
     double samplesPerSecond = 0.0;

@@ -23,7 +23,8 @@ class Accel {
 public:
     /// `toScene` of each geometry maps mesh space to normalised scene space. Geometries are flattened while all triangles
     /// stay below a limit; meshes placed many times become Embree instances above it.
-    Accel(std::span<const Mesh> meshes, std::span<const std::uint32_t> meshOfGeometry, std::span<const glm::mat4> toScene);
+    Accel(std::span<const Mesh> meshes, std::span<const std::uint32_t> meshOfGeometry,
+          std::span<const glm::mat4> toScene);
     ~Accel();
 
     /// False when nothing is hit in (0, ray.tMax), or when the ray is not finite.

@@ -13,18 +13,19 @@ namespace pellucid {
 struct Mesh {
     std::string name;
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;    ///< unit; empty: flat shading
-    std::vector<glm::vec4> tangents;   ///< xyz unit, w = handedness +-1; empty: derived from uv where needed
-    std::vector<glm::vec2> uv0, uv1;   ///< glTF convention: (0,0) is the image's upper left corner
-    std::vector<glm::vec4> colors;     ///< linear, multiplies the base colour
+    std::vector<glm::vec3> normals;   ///< unit; empty: flat shading
+    std::vector<glm::vec4> tangents;  ///< xyz unit, w = handedness +-1; empty: derived from uv where needed
+    std::vector<glm::vec2> uv0, uv1;  ///< glTF convention: (0,0) is the image's upper left corner
+    std::vector<glm::vec4> colors;    ///< linear, multiplies the base colour
     std::vector<glm::uvec3> triangles;
-    std::uint32_t material = 0;        ///< index into the scene's materials
+    std::uint32_t material = 0;  ///< index into the scene's materials
 };
 
 /// One placement of a mesh. `toWorld` is affine and invertible.
 struct Geometry {
     std::uint32_t mesh = 0;
-    glm::dmat4 toWorld{1.0};  ///< negative determinant: the front goes along with the mirrored normals, Scene sees to it
+    glm::dmat4 toWorld{
+        1.0};  ///< negative determinant: the front goes along with the mirrored normals, Scene sees to it
 };
 
 }  // namespace pellucid

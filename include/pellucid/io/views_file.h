@@ -13,6 +13,7 @@ namespace pellucid {
 /// `verticalFov` (radians) stands where a line names none; up is (0, 1, 0) where it names none. Throws Error{BadInput} with the
 /// line's number.
 [[nodiscard]] std::vector<CameraSpec> loadViews(const std::filesystem::path& file, double verticalFov);
-[[nodiscard]] std::vector<CameraSpec> parseViews(std::string_view text, const std::filesystem::path& file, double verticalFov);
+[[nodiscard]] std::vector<CameraSpec> parseViews(std::string_view text, const std::filesystem::path& file,
+                                                 double verticalFov);
 
 }  // namespace pellucid

@@ -15,7 +15,9 @@ class Image {
 public:
     Image() = default;
     Image(int width, int height, std::vector<std::string> channelNames)
-        : width_(width), height_(height), names_(std::move(channelNames)),
+        : width_(width),
+          height_(height),
+          names_(std::move(channelNames)),
           data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * names_.size(), 0.0F) {}
 
     [[nodiscard]] int width() const noexcept { return width_; }

@@ -19,7 +19,8 @@ enum class SamplerKind : std::uint8_t { Sobol, Independent, Stratified, Halton }
 
 class Sampler {
 public:
-    Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t index, SamplerKind kind = SamplerKind::Sobol) noexcept
+    Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t index,
+            SamplerKind kind = SamplerKind::Sobol) noexcept
         : key_(hashCombine(seed, stream)), index_(index), kind_(kind) {}
 
     /// A point of a (0,2)-sequence in [0,1)^2.

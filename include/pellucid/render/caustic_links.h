@@ -11,7 +11,8 @@ namespace pellucid {
 
 /// One row a pair, those that matter most first: useful photons, then hits, then the power of the lamp. `receivers`: pixels
 /// whose path finds a diffuse surface.
-[[nodiscard]] std::vector<CausticLink> causticLinks(const Scene& scene, const CasterTally& tally, std::size_t receivers);
+[[nodiscard]] std::vector<CausticLink> causticLinks(const Scene& scene, const CasterTally& tally,
+                                                    std::size_t receivers);
 
 /// At most `rows` of them; the last one sums the rest.
 [[nodiscard]] std::vector<CausticLink> shortened(const std::vector<CausticLink>& links, std::size_t rows);

@@ -19,12 +19,12 @@ namespace pellucid {
 
 /// What a pixel has shown so far. Variances are of one sample, not of the mean.
 struct PixelNoise {
-    float eyeVariance = 0.0F;         ///< of the luminance of an eye sample
-    float photonVariance = 0.0F;      ///< of the luminance that an iteration's photons give
-    float blur2 = 0.0F;               ///< square of the kernels' bias, free of its own noise: may be negative
+    float eyeVariance = 0.0F;     ///< of the luminance of an eye sample
+    float photonVariance = 0.0F;  ///< of the luminance that an iteration's photons give
+    float blur2 = 0.0F;           ///< square of the kernels' bias, free of its own noise: may be negative
     float luminance = 0.0F;
-    float rays = 1.0F;                ///< of an eye sample
-    bool inside = true;               ///< false: not rendered
+    float rays = 1.0F;   ///< of an eye sample
+    bool inside = true;  ///< false: not rendered
 };
 
 class Film {
@@ -38,8 +38,8 @@ public:
     /// Whether a sample is finite; one that is not is counted, and has to be left out. Only the thread that owns the pixel.
     [[nodiscard]] bool admit(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance) noexcept;
     /// Adds the mean of the samples that `pixel` took in an iteration, if it is finite. Only the thread that owns the pixel.
-    void add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance, const FirstHit& first, int samples = 1,
-             std::uint64_t rays = 0) noexcept;
+    void add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance& radiance, const FirstHit& first,
+             int samples = 1, std::uint64_t rays = 0) noexcept;
     /// Adds the splats of a light pass, in their order. `pass` counts light passes.
     void addSplats(const std::vector<LightSplat>& splats, std::uint32_t pass) noexcept;
     /// Tells that an iteration is over: every pixel has got one more term (splats count apart).
@@ -82,18 +82,19 @@ public:
 private:
     struct Pixel {
         double layer[kPathClasses][3] = {};
-        double half[3] = {};          ///< of odd iterations
+        double half[3] = {};  ///< of odd iterations
         double splat[kPathClasses][3] = {};
         double splatHalf[3] = {};
-        double square = 0.0;          ///< of the luminance of an iteration's mean
-        double eyeSum = 0.0, eyeSquare = 0.0;  ///< of the luminance without what photons gave, weighed by the number of samples
+        double square = 0.0;  ///< of the luminance of an iteration's mean
+        double eyeSum = 0.0,
+               eyeSquare = 0.0;  ///< of the luminance without what photons gave, weighed by the number of samples
         double sharedSum = 0.0, sharedSquare = 0.0;  ///< of the luminance that photons gave
         double blur = 0.0, blurHalf = 0.0;
         std::uint64_t rays = 0;
         std::uint32_t taken = 0;
         std::uint8_t share = 1;
-        double splatSquare = 0.0;     ///< of the luminance of a pass's splats
-        float splatPass = 0.0F;       ///< while a pass is added
+        double splatSquare = 0.0;  ///< of the luminance of a pass's splats
+        float splatPass = 0.0F;    ///< while a pass is added
         float albedo[3] = {}, normal[3] = {};
         float depth = 0.0F, radius = 0.0F, photons = 0.0F;
         std::uint32_t nonfinite = 0, firstNonfinite = 0;
@@ -108,9 +109,9 @@ private:
     int width_, height_;
     std::uint32_t samples_ = 0, splatPasses_ = 0;
     std::vector<Pixel> pixels_;
-    std::vector<PathString> stringSlots_;        ///< empty: not kept
+    std::vector<PathString> stringSlots_;  ///< empty: not kept
     std::array<std::int16_t, PathString::kCodes> slotOf_{};
-    std::vector<double> strings_, splatStrings_; ///< sums, by slot, pixel, channel
+    std::vector<double> strings_, splatStrings_;  ///< sums, by slot, pixel, channel
 };
 
 /// Names that --layers takes beyond the four that are always there.

@@ -15,8 +15,8 @@ namespace pellucid {
 
 /// What the camera sees at D vertices, one look a pixel.
 struct Survey {
-    std::vector<GatherPoint> points;     ///< by pixel; not valid where no D vertex was found
-    std::size_t receivers = 0;           ///< pixels with a valid one
+    std::vector<GatherPoint> points;  ///< by pixel; not valid where no D vertex was found
+    std::size_t receivers = 0;        ///< pixels with a valid one
     float medianFootprint = 0.0F;
     VisibleCells visible{1.0F};
     std::uint64_t rays = 0;
@@ -31,10 +31,10 @@ struct GenerationSize {
 
 struct Plan {
     bool causticMap = false, globalMap = false, cache = false, lightPass = false;
-    std::uint32_t causticPaths = 0;      ///< an iteration
-    std::uint32_t globalPaths = 0;       ///< for the first generation of the cache
-    bool adaptiveRadius = true;          ///< of the caustic kernel, pixel by pixel
-    float causticFootprints = 2.5F;      ///< kernel radius of the first iteration where it is not
+    std::uint32_t causticPaths = 0;  ///< an iteration
+    std::uint32_t globalPaths = 0;   ///< for the first generation of the cache
+    bool adaptiveRadius = true;      ///< of the caustic kernel, pixel by pixel
+    float causticFootprints = 2.5F;  ///< kernel radius of the first iteration where it is not
     float alpha = 2.0F / 3.0F;
     float cacheError = 0.25F;
     int gatherRays = 128;                ///< a record, in the first generation
@@ -42,19 +42,19 @@ struct Plan {
     std::uint32_t mostGlobalPaths = 0;   ///< of any generation, for photon.memory; 0: no limit
     bool growPhotons = true, growRays = true;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
-    bool causticChains = false;          ///< beside the cache eye paths follow S chains to the lamps, alone or with a share
-    bool bidirectional = false;          ///< eye paths meet light paths
-    float texelWidth = 0.0F;             ///< of the texel irradiance, scene units; 0: off
-    bool splitLampChains = false;        ///< lamps seen through smooth glass: both ways at each interface
-    bool adaptive = false;               ///< pixels take samples by their noise
+    bool causticChains = false;    ///< beside the cache eye paths follow S chains to the lamps, alone or with a share
+    bool bidirectional = false;    ///< eye paths meet light paths
+    float texelWidth = 0.0F;       ///< of the texel irradiance, scene units; 0: off
+    bool splitLampChains = false;  ///< lamps seen through smooth glass: both ways at each interface
+    bool adaptive = false;         ///< pixels take samples by their noise
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;
     std::vector<CausticLink> causticLinks;
     std::vector<std::string> blindSpots;
-    double timeCap = 0.0;                ///< seconds, for a render that has only an error to reach; 0: none
+    double timeCap = 0.0;  ///< seconds, for a render that has only an error to reach; 0: none
     std::uint64_t pilotRays = 0, pilotPhotons = 0;
-    double usefulShare = 0.0;            ///< of the photon paths, in the last look of the pilot
-    double guideGain = 1.0;              ///< that share over the one without guide
+    double usefulShare = 0.0;  ///< of the photon paths, in the last look of the pilot
+    double guideGain = 1.0;    ///< that share over the one without guide
 
     /// A quick first generation, then ever better ones: more photons and rays, a smaller error, so that the bias of map and
     /// cache vanishes as time goes on. What was set by name stays, but for the error.
@@ -62,8 +62,8 @@ struct Plan {
 };
 
 /// `kernelFootprints`, `largestKernel` (scene units): how far kernels may reach from what is seen.
-[[nodiscard]] Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, float kernelFootprints, float largestKernel,
-                            const Workers& workers);
+[[nodiscard]] Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed,
+                            float kernelFootprints, float largestKernel, const Workers& workers);
 
 [[nodiscard]] Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& request, const Survey& seen,
                             const Workers& workers);

@@ -15,7 +15,7 @@ using FrameDone = std::function<void(std::size_t frame, RenderResult result)>;
 
 /// The request's budget is that of each frame, beside what is learnt for all; its cache file is read before and written after
 /// that. Ends early when `progress` asks for it: the frame that was under way is still handed over, as interrupted.
-void renderViews(const Scene& scene, const RenderRequest& request, const std::vector<std::string>& cameras, const FrameDone& done,
-                 const Workers& workers, const Progress& progress = {});
+void renderViews(const Scene& scene, const RenderRequest& request, const std::vector<std::string>& cameras,
+                 const FrameDone& done, const Workers& workers, const Progress& progress = {});
 
 }  // namespace pellucid

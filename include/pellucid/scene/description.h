@@ -20,29 +20,29 @@ struct PunctualLight {
     PunctualKind kind = PunctualKind::Point;
     glm::dvec3 position{0.0};
     glm::dvec3 direction{0.0, 0.0, -1.0};
-    Rgb intensity{1.0F};            ///< W/sr for point and spot, W/m^2 for directional (colour x intensity)
+    Rgb intensity{1.0F};  ///< W/sr for point and spot, W/m^2 for directional (colour x intensity)
     double innerCone = 0.0, outerCone = 0.7853981633974483;  ///< half angles, radians
 };
 
 struct SceneDescription {
-    std::string name;                    ///< the file's name without folders
+    std::string name;  ///< the file's name without folders
     std::vector<Mesh> meshes;
     std::vector<Geometry> geometries;
-    std::vector<Material> materials;     ///< never empty: the default material stands where none is named
+    std::vector<Material> materials;  ///< never empty: the default material stands where none is named
     std::vector<CameraSpec> cameras;
     std::vector<PunctualLight> lights;
     std::vector<std::string> extensionsUsed, extensionsIgnored;
-    std::vector<std::string> warnings;   ///< one line each
-    std::string contentHash;             ///< hex digest of the file and of every file that it names
-    std::size_t droppedTriangles = 0;    ///< degenerate ones
+    std::vector<std::string> warnings;  ///< one line each
+    std::string contentHash;            ///< hex digest of the file and of every file that it names
+    std::size_t droppedTriangles = 0;   ///< degenerate ones
 };
 
 /// Light from infinity, given by the user: a constant or an equirectangular map (RGB, y up, the centre column looks
 /// along -z... see scene/environment.h for the exact mapping).
 struct EnvironmentDescription {
     Rgb constant{0.0F};
-    Image map;                           ///< empty: constant
-    std::size_t mendedTexels = 0;        ///< NaN, infinite or negative ones, set to 0
+    Image map;                     ///< empty: constant
+    std::size_t mendedTexels = 0;  ///< NaN, infinite or negative ones, set to 0
     std::string contentHash;
 };
 

@@ -133,8 +133,8 @@ public:
     [[nodiscard]] std::uint32_t environmentLight() const noexcept;
     /// pdfSolidAngle of a sample() from (point, normal) of `light` in direction `wi`, at `distance`; of a delta light the
     /// probability of its choice.
-    [[nodiscard]] float pdfTowards(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal, const glm::vec3& wi,
-                                   float distance) const noexcept;
+    [[nodiscard]] float pdfTowards(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal,
+                                   const glm::vec3& wi, float distance) const noexcept;
     /// |cos| between the normal of `light` and a direction; 1 for lights without a surface.
     [[nodiscard]] float cosineAt(std::uint32_t light, const glm::vec3& direction) const noexcept;
     /// Densities of sampleEmission() for light that leaves `light` in `direction`.

@@ -31,7 +31,7 @@ struct Normalisation {
 
 struct SceneOptions {
     LobeRules lobeRules;
-    bool requireLight = true;        ///< a scene without any light is an error
+    bool requireLight = true;  ///< a scene without any light is an error
 };
 
 /// A hit with its full surface attributes.
@@ -62,13 +62,13 @@ public:
 
     [[nodiscard]] const SurfaceModel& surfaces() const noexcept;
     [[nodiscard]] const Lights& lights() const noexcept;
-    [[nodiscard]] const Environment* environment() const noexcept;   ///< null: none
+    [[nodiscard]] const Environment* environment() const noexcept;  ///< null: none
     [[nodiscard]] const SceneDescription& description() const noexcept;
-    [[nodiscard]] const Bounds& bounds() const noexcept;             ///< normalised space
+    [[nodiscard]] const Bounds& bounds() const noexcept;  ///< normalised space
     [[nodiscard]] float radius() const noexcept { return bounds().radius(); }
     [[nodiscard]] const Normalisation& normalisation() const noexcept;
-    [[nodiscard]] std::uint64_t triangles() const noexcept;          ///< with instances counted each
-    [[nodiscard]] const std::string& hash() const noexcept;          ///< of file, environment and options
+    [[nodiscard]] std::uint64_t triangles() const noexcept;  ///< with instances counted each
+    [[nodiscard]] const std::string& hash() const noexcept;  ///< of file, environment and options
     /// Kinds of lobes anywhere in the scene.
     [[nodiscard]] LobeKinds lobeKinds() const noexcept;
 

@@ -39,9 +39,9 @@ struct CompareRequest {
     int width = 0, height = 0;  ///< 0: the reference's size, or 512 wide by the camera's aspect
     std::string camera;
     std::filesystem::path folder;
-    std::filesystem::path reference;          ///< empty: one is made
-    double referenceTime = 0.0;               ///< longest time to make one, in seconds; 0: 100 times the longest budget
-    Settings settings;                        ///< of the reference that is made
+    std::filesystem::path reference;  ///< empty: one is made
+    double referenceTime = 0.0;       ///< longest time to make one, in seconds; 0: 100 times the longest budget
+    Settings settings;                ///< of the reference that is made
     std::string version, sceneFile, environment, command;  ///< for the files
 };
 

@@ -19,11 +19,11 @@ namespace pellucid {
 inline constexpr std::array<std::string_view, 2> kSweepMethods{"path", "photon"};
 
 struct SweepFigures {
-    double error = 0.0;    ///< root of the mean over pixels and seeds of ((I - R)/R)^2
-    double bias = 0.0;     ///< mean(I)/mean(R) - 1 over all seeds
-    double interval = 0.0; ///< 95 % half width of the bias, over the seeds
-    double seconds = 0.0;  ///< of one render, mean
-    double rays = 0.0;     ///< of one render, mean
+    double error = 0.0;     ///< root of the mean over pixels and seeds of ((I - R)/R)^2
+    double bias = 0.0;      ///< mean(I)/mean(R) - 1 over all seeds
+    double interval = 0.0;  ///< 95 % half width of the bias, over the seeds
+    double seconds = 0.0;   ///< of one render, mean
+    double rays = 0.0;      ///< of one render, mean
 };
 
 struct SweepStep {

@@ -152,9 +152,11 @@ public:
                                                    LobeKinds kinds, TransportMode mode) const noexcept;
 
     /// sample() and pdf() with directions that are blind to the lobes; Directions::Bsdf is the same as those.
-    [[nodiscard]] std::optional<BsdfSample> sample(const glm::vec3& wo, float chooseLobe, const glm::vec2& u, LobeKinds kinds,
-                                                   TransportMode mode, Directions directions) const noexcept;
-    [[nodiscard]] float pdf(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, Directions directions) const noexcept;
+    [[nodiscard]] std::optional<BsdfSample> sample(const glm::vec3& wo, float chooseLobe, const glm::vec2& u,
+                                                   LobeKinds kinds, TransportMode mode,
+                                                   Directions directions) const noexcept;
+    [[nodiscard]] float pdf(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds,
+                            Directions directions) const noexcept;
 
     /// All directions that the delta lobes lead to, each with its whole weight: where an interface splits light, both ways.
     [[nodiscard]] DeltaBranches deltaBranches(const glm::vec3& wo, TransportMode mode) const noexcept;

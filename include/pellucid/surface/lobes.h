@@ -211,7 +211,9 @@ inline void sampleSmoothDielectric(const DielectricLobe& lobe, const glm::vec3& 
 
 /// With which sampleLobe() of a delta lobe reflects: it does so for the lowest part of `choose`.
 template <class Model>
-[[nodiscard]] inline float deltaReflectionChance(const Model&, const glm::vec3&) noexcept { return 1.0F; }
+[[nodiscard]] inline float deltaReflectionChance(const Model&, const glm::vec3&) noexcept {
+    return 1.0F;
+}
 [[nodiscard]] inline float deltaReflectionChance(const DielectricLobe& lobe, const glm::vec3& wo) noexcept {
     return detail::reflectionChance(lobe, dielectricReflectance(lobe, wo.z));
 }

@@ -9,14 +9,16 @@ namespace pellucid {
 
 struct SurfacePoint {
     glm::vec3 position{0.0F};
-    glm::vec3 geometricNormal{0.0F, 0.0F, 1.0F};  ///< unit; by the triangle's winding (glTF: counter-clockwise is the front)
-    glm::vec3 shadingNormal{0.0F, 0.0F, 1.0F};    ///< unit, interpolated, on the same side as geometricNormal; not yet normal-mapped
-    glm::vec3 tangent{1.0F, 0.0F, 0.0F};          ///< unit, for normal maps; zero when there is none
-    float tangentSign = 1.0F;                     ///< bitangent = sign * cross(shadingNormal, tangent)
+    glm::vec3 geometricNormal{0.0F, 0.0F,
+                              1.0F};  ///< unit; by the triangle's winding (glTF: counter-clockwise is the front)
+    glm::vec3 shadingNormal{0.0F, 0.0F,
+                            1.0F};  ///< unit, interpolated, on the same side as geometricNormal; not yet normal-mapped
+    glm::vec3 tangent{1.0F, 0.0F, 0.0F};  ///< unit, for normal maps; zero when there is none
+    float tangentSign = 1.0F;             ///< bitangent = sign * cross(shadingNormal, tangent)
     glm::vec2 uv[2]{};
     glm::vec4 color{1.0F};
     std::uint32_t geometry = 0, primitive = 0, material = 0;
-    glm::vec2 barycentric{0.0F};                  ///< weights of the triangle's second and third corner
+    glm::vec2 barycentric{0.0F};  ///< weights of the triangle's second and third corner
 };
 
 }  // namespace pellucid

@@ -24,10 +24,10 @@ enum class Wrap { Repeat, Clamp, Mirror };
 /// How a material uses an image. No image: the look-up returns white.
 struct TextureRef {
     std::shared_ptr<const TextureImage> image;
-    bool srgb = false;     ///< decode colour channels with the sRGB curve (alpha never is)
-    bool linear = true;    ///< bilinear, else nearest
+    bool srgb = false;   ///< decode colour channels with the sRGB curve (alpha never is)
+    bool linear = true;  ///< bilinear, else nearest
     Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
-    int uvSet = 0;         ///< 0 or 1
+    int uvSet = 0;                        ///< 0 or 1
     glm::vec2 offset{0.0F}, scale{1.0F};  ///< KHR_texture_transform
     float rotation = 0.0F;                ///< radians, counter-clockwise
 

@@ -16,11 +16,13 @@ namespace pellucid {
 class Bidirectional {
 public:
     /// `lightPaths`: traced for each sample of every pixel, that is, pixels of the image.
-    Bidirectional(const Scene& scene, const Camera& camera, const TransportOptions& options, std::uint32_t lightPaths) noexcept;
+    Bidirectional(const Scene& scene, const Camera& camera, const TransportOptions& options,
+                  std::uint32_t lightPaths) noexcept;
 
     /// One eye path, one light path. The radiance of the eye path's pixel; what falls on others is appended to `splats`.
-    [[nodiscard]] LayeredRadiance sample(const Ray& cameraRay, Sampler& eye, Sampler& light, std::vector<LightSplat>& splats,
-                                         FirstHit* first = nullptr, StringSums* strings = nullptr) noexcept;
+    [[nodiscard]] LayeredRadiance sample(const Ray& cameraRay, Sampler& eye, Sampler& light,
+                                         std::vector<LightSplat>& splats, FirstHit* first = nullptr,
+                                         StringSums* strings = nullptr) noexcept;
 
     [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
     /// The two paths of the last sample.
@@ -32,7 +34,8 @@ private:
     void splat(const PathVertex& y, std::size_t index, const glm::vec2& lens, std::vector<LightSplat>& splats) noexcept;
     void addDirect(const PathVertex& z, float choose, const glm::vec2& u, LayeredRadiance& sum) noexcept;
     void connect(const PathVertex& z, std::size_t lightVertex, LayeredRadiance& sum) noexcept;
-    [[nodiscard]] Rgb transmittance(const PathVertex& from, const glm::vec3& direction, const Ray& shadow, float distance) noexcept;
+    [[nodiscard]] Rgb transmittance(const PathVertex& from, const glm::vec3& direction, const Ray& shadow,
+                                    float distance) noexcept;
     [[nodiscard]] PathString withLightEnd(PathString path, std::size_t vertices) const noexcept;
 
     const Scene& scene_;

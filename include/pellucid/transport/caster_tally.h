@@ -65,12 +65,14 @@ private:
     enum Count : std::size_t { kHit, kDeposited, kUseful, kEscaped, kCounts };
     void findLamps(const Scene& scene);
     void findCasters(const Scene& scene);
-    [[nodiscard]] std::size_t cell(std::size_t lamp, std::size_t caster) const noexcept { return (lamp * casters_.size() + caster) * kCounts; }
+    [[nodiscard]] std::size_t cell(std::size_t lamp, std::size_t caster) const noexcept {
+        return (lamp * casters_.size() + caster) * kCounts;
+    }
 
     std::vector<TalliedLamp> lamps_;
     std::vector<TalliedCaster> casters_;
-    std::vector<std::uint32_t> lampOf_;               ///< by light
-    std::vector<std::uint64_t> bits_;                 ///< by material
+    std::vector<std::uint32_t> lampOf_;  ///< by light
+    std::vector<std::uint64_t> bits_;    ///< by material
     std::vector<std::atomic<std::uint64_t>> emitted_, missed_, counts_;
 };
 

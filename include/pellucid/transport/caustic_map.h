@@ -37,12 +37,14 @@ public:
     /// `blur` receives an estimate of the kernel's bias, in luminance: the bias of any of the kernels grows as r^2, so twice the
     /// difference of this kernel's estimate and that of the same shape over half its area, from the same photons.
     /// `photonsPerEtendue` >= 0: each photon has the share that chanceShare() leaves to it. `photons` receives how many there were.
-    [[nodiscard]] Rgb irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                                 const DiffuseLobe& lobe, float radius, float* blur = nullptr, float photonsPerEtendue = -1.0F,
+    [[nodiscard]] Rgb irradiance(const glm::vec3& point, const glm::vec3& geometricNormal,
+                                 const glm::vec3& shadingNormal, const DiffuseLobe& lobe, float radius,
+                                 float* blur = nullptr, float photonsPerEtendue = -1.0F,
                                  int* photons = nullptr) const noexcept;
 
     /// What arrived within `radius` on the side of the normal.
-    [[nodiscard]] FluxSums fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept;
+    [[nodiscard]] FluxSums fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal,
+                                      float radius) const noexcept;
 
     [[nodiscard]] std::size_t size() const noexcept;
     [[nodiscard]] const PhotonList& photons() const noexcept;
@@ -50,8 +52,9 @@ public:
 private:
     struct Impl;
     template <class Shape>
-    [[nodiscard]] Rgb sum(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal, const DiffuseLobe& lobe,
-                          float radius, float* blur, float photonsPerEtendue, int* photons) const noexcept;
+    [[nodiscard]] Rgb sum(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
+                          const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue,
+                          int* photons) const noexcept;
     std::unique_ptr<Impl> impl_;
 };
 

@@ -21,12 +21,13 @@ using EmissionNumbers5 = std::array<float, 5>;
 struct UsefulEmission {
     EmissionNumbers5 u{};
     float weight = 0.0F;
-    glm::vec3 landed{0.0F};    ///< where it was first of use
+    glm::vec3 landed{0.0F};  ///< where it was first of use
 };
 
 struct GuidedEmission {
-    EmissionSample emission;   ///< flux is that of one emitted path, guided density included
-    UsefulEmission origin;     ///< weight: inverse density (to be multiplied with the flux that arrives, relative to emission.flux)
+    EmissionSample emission;  ///< flux is that of one emitted path, guided density included
+    UsefulEmission
+        origin;  ///< weight: inverse density (to be multiplied with the flux that arrives, relative to emission.flux)
 };
 
 class EmissionGuide {
@@ -44,8 +45,8 @@ public:
 
 private:
     struct Node {
-        std::int32_t axis = -1;      ///< -1: leaf
-        std::uint32_t left = 0;      ///< right = left + 1
+        std::int32_t axis = -1;  ///< -1: leaf
+        std::uint32_t left = 0;  ///< right = left + 1
         float leftShare = 0.5F;
     };
     [[nodiscard]] float density(const EmissionNumbers5& u) const noexcept;
@@ -54,8 +55,8 @@ private:
                const EmissionNumbers5& lower, const EmissionNumbers5& upper, int depth);
 
     const Lights& lights_;
-    std::vector<double> lightCdf_;   ///< of the unguided choice of light
-    std::vector<Node> nodes_;        ///< none: uniform
+    std::vector<double> lightCdf_;  ///< of the unguided choice of light
+    std::vector<Node> nodes_;       ///< none: uniform
     float uniformShare_ = 1.0F;
 };
 

@@ -15,9 +15,7 @@ struct EnergyBalance {
     double roulette = 0.0;  ///< ended by chance, less what the survivors were given: 0 on average
     double dropped = 0.0;   ///< grazed the true surface too flatly to be used: the pass's only loss
 
-    [[nodiscard]] double accounted() const noexcept {
-        return escaped + absorbed + stored + left + roulette + dropped;
-    }
+    [[nodiscard]] double accounted() const noexcept { return escaped + absorbed + stored + left + roulette + dropped; }
     /// What is missing, as a share of what was emitted.
     [[nodiscard]] double residual() const noexcept {
         return emitted > 0.0 ? (accounted() - emitted) / emitted : accounted();

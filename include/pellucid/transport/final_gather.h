@@ -10,12 +10,13 @@
 namespace pellucid {
 
 struct GatherOptions {
-    int rays = 400;               ///< about; rounded to M x N with N about pi M
-    float minRadius = 0.0F, maxRadius = 1.0F;   ///< bounds of R, scene units
+    int rays = 400;                            ///< about; rounded to M x N with N about pi M
+    float minRadius = 0.0F, maxRadius = 1.0F;  ///< bounds of R, scene units
     std::uint64_t seed = 0;
 };
 
 /// `point` must be valid. `key` identifies the record among all of the render. Returns a record with bounded radius.
-[[nodiscard]] IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const GatherOptions& options, std::uint64_t key);
+[[nodiscard]] IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const GatherOptions& options,
+                                            std::uint64_t key);
 
 }  // namespace pellucid

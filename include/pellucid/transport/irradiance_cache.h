@@ -21,17 +21,17 @@ namespace pellucid {
 /// One gather. Gradients hold a column for each colour channel.
 struct IrradianceRecord {
     glm::vec3 position{0.0F}, normal{0.0F};
-    Rgb irradiance{0.0F};             ///< W m^-2
-    Rgb grazingShare{0.0F};           ///< E5 / E (surface/bsdf.h, DiffuseLobe)
+    Rgb irradiance{0.0F};                    ///< W m^-2
+    Rgb grazingShare{0.0F};                  ///< E5 / E (surface/bsdf.h, DiffuseLobe)
     std::array<glm::vec3, 3> rotation{};     ///< dE/d(rotation), rad^-1, as (n_i x n) . rotation
     std::array<glm::vec3, 3> translation{};  ///< dE/dx, per scene unit
-    float harmonicDistance = 0.0F;    ///< R: mean distance of what is seen
-    float radius = 0.0F;              ///< R after bounds and neighbour clamping
+    float harmonicDistance = 0.0F;           ///< R: mean distance of what is seen
+    float radius = 0.0F;                     ///< R after bounds and neighbour clamping
 };
 
 struct Irradiance {
-    Rgb plain{0.0F}, grazing{0.0F};   ///< E and E5
-    int records = 0;                  ///< that spoke
+    Rgb plain{0.0F}, grazing{0.0F};  ///< E and E5
+    int records = 0;                 ///< that spoke
 
     /// int L T(wi) cos for a lobe: a E - b E5.
     [[nodiscard]] Rgb through(const DiffuseLobe& lobe) const noexcept {

@@ -18,7 +18,8 @@ struct KernelRadiusOptions {
 };
 
 /// The radius at `point`, in footprints.
-[[nodiscard]] float chooseKernelRadius(const CausticMap& map, const GatherPoint& point, const KernelRadiusOptions& options) noexcept;
+[[nodiscard]] float chooseKernelRadius(const CausticMap& map, const GatherPoint& point,
+                                       const KernelRadiusOptions& options) noexcept;
 
 /// Radii of all pixels: means, in the logarithm, over the passes that they were chosen from.
 class KernelRadii {
@@ -49,12 +50,12 @@ private:
     [[nodiscard]] std::size_t blockAt(int bx, int by) const noexcept {
         return static_cast<std::size_t>(by) * static_cast<std::size_t>(blocksX_) + static_cast<std::size_t>(bx);
     }
-    static constexpr int kBlock = 2;     ///< pixels that share a radius, a side
+    static constexpr int kBlock = 2;  ///< pixels that share a radius, a side
     int width_, height_, blocksX_, blocksY_, passes_ = 0;
     KernelRadiusOptions options_;
-    std::vector<float> logRadius_;       ///< by block: the newest pass counts half, as the guide gets better
-    std::vector<float> logFactor_;       ///< by block: what the image's own noise and bias have corrected
-    std::vector<float> radii_;           ///< by block; smoothed
+    std::vector<float> logRadius_;  ///< by block: the newest pass counts half, as the guide gets better
+    std::vector<float> logFactor_;  ///< by block: what the image's own noise and bias have corrected
+    std::vector<float> radii_;      ///< by block; smoothed
 };
 
 template <class Function>

@@ -18,11 +18,11 @@ struct ChainVertex {
     const SurfaceHit& hit;
     const Bsdf& bsdf;
     glm::vec3 wo;
-    Rgb throughput;                   ///< up to the hit
-    Rgb absorption;                   ///< of the medium on wo's side
+    Rgb throughput;  ///< up to the hit
+    Rgb absorption;  ///< of the medium on wo's side
     float etaScale;
     EyeLedger ledger;
-    int vertices;                     ///< this one included
+    int vertices;  ///< this one included
 };
 
 class LampChains {

@@ -15,8 +15,8 @@ namespace pellucid {
 
 struct LightSplat {
     std::uint32_t pixel = 0;
-    Rgb radiance{0.0F};       ///< already divided by the number of paths of the pass
-    PathString path;          ///< from the eye
+    Rgb radiance{0.0F};  ///< already divided by the number of paths of the pass
+    PathString path;     ///< from the eye
 };
 
 /// Light over S lobes alone that arrived at a D lobe: which texel, and how it stands to the shading normal.
@@ -25,19 +25,20 @@ struct CausticArrival {
     glm::vec2 barycentric{0.0F};
     bool backSide = false;
     float cosine = 0.0F;
-    Rgb flux{0.0F};           ///< of irradiance under the shading normal, divided by the number of paths of the pass
+    Rgb flux{0.0F};  ///< of irradiance under the shading normal, divided by the number of paths of the pass
 };
 
 struct LightPass {
-    std::vector<LightSplat> splats;   ///< in the order of the paths
+    std::vector<LightSplat> splats;        ///< in the order of the paths
     std::vector<CausticArrival> arrivals;  ///< with `looked` only
     std::vector<UsefulEmission> useful;
     std::uint64_t rays = 0, emitted = 0;
-    EnergyBalance energy;             ///< of the pass, scene units
+    EnergyBalance energy;  ///< of the pass, scene units
 };
 
 /// `looked`: keep arrivals; those at places that the camera looks at are useful, too, not only those that it sees directly.
-[[nodiscard]] LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide, const PhotonPassKey& key,
-                                        const Workers& workers, const VisibleCells* looked = nullptr);
+[[nodiscard]] LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide,
+                                        const PhotonPassKey& key, const Workers& workers,
+                                        const VisibleCells* looked = nullptr);
 
 }  // namespace pellucid

@@ -55,7 +55,9 @@ public:
         code_ = static_cast<std::uint8_t>(place < 3 ? code_ | letter << (2 * place) : code_ | kOn);
     }
     /// The same with everything behind it left open.
-    [[nodiscard]] constexpr PathString open() const noexcept { return PathString(static_cast<std::uint8_t>(code_ | kOn)); }
+    [[nodiscard]] constexpr PathString open() const noexcept {
+        return PathString(static_cast<std::uint8_t>(code_ | kOn));
+    }
 
     [[nodiscard]] constexpr std::uint8_t code() const noexcept { return code_; }
     /// "EDSL", "ED_L".
@@ -84,11 +86,12 @@ private:
 
 /// Classes that another estimator carries: a walk adds nothing to them.
 struct LeftClasses {
-    bool caustics = false;       ///< E X S+ L: light tracing
-    bool seenCaustics = false;   ///< E S+ D S+ L: texel irradiance
+    bool caustics = false;      ///< E X S+ L: light tracing
+    bool seenCaustics = false;  ///< E S+ D S+ L: texel irradiance
 
     [[nodiscard]] constexpr bool has(PathString path) const noexcept {
-        if (caustics && (path == stringOver({kDiffuse, kSpecular}) || path == stringOver({kGlossy, kSpecular}))) return true;
+        if (caustics && (path == stringOver({kDiffuse, kSpecular}) || path == stringOver({kGlossy, kSpecular})))
+            return true;
         return seenCaustics && path == stringOver({kSpecular, kDiffuse, kSpecular});
     }
 };

@@ -12,9 +12,9 @@ namespace pellucid {
 
 struct Photon {
     glm::vec3 position{0.0F};
-    glm::vec3 wi{0.0F};       ///< to where it came from, unit
-    glm::vec3 normal{0.0F};   ///< geometric, on wi's side
-    Rgb flux{0.0F};           ///< W, already divided by the number of emitted paths
+    glm::vec3 wi{0.0F};           ///< to where it came from, unit
+    glm::vec3 normal{0.0F};       ///< geometric, on wi's side
+    Rgb flux{0.0F};               ///< W, already divided by the number of emitted paths
     float etendueDensity = 0.0F;  ///< of its emission without guide: see Lights
 };
 

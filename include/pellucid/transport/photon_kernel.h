@@ -38,10 +38,14 @@ struct Biweight {
     const auto optimal = [](double roughness, double moment) { return std::cbrt(roughness / (moment * moment)); };
     constexpr double kEpanechnikov = 4.0 / 3.0;
     switch (kernel) {
-        case PhotonKernel::Uniform: return optimal(1.0, 1.0 / 4.0) / optimal(kEpanechnikov, 1.0 / 6.0);
-        case PhotonKernel::Cone: return optimal(3.0 / 2.0, 3.0 / 20.0) / optimal(kEpanechnikov, 1.0 / 6.0);
-        case PhotonKernel::Biweight: return optimal(9.0 / 5.0, 1.0 / 8.0) / optimal(kEpanechnikov, 1.0 / 6.0);
-        case PhotonKernel::Epanechnikov: break;
+        case PhotonKernel::Uniform:
+            return optimal(1.0, 1.0 / 4.0) / optimal(kEpanechnikov, 1.0 / 6.0);
+        case PhotonKernel::Cone:
+            return optimal(3.0 / 2.0, 3.0 / 20.0) / optimal(kEpanechnikov, 1.0 / 6.0);
+        case PhotonKernel::Biweight:
+            return optimal(9.0 / 5.0, 1.0 / 8.0) / optimal(kEpanechnikov, 1.0 / 6.0);
+        case PhotonKernel::Epanechnikov:
+            break;
     }
     return 1.0;
 }

@@ -18,27 +18,28 @@ namespace pellucid {
 
 struct PhotonPassKey {
     std::uint64_t seed = 0;
-    std::uint64_t pass = 0;          ///< a different one for each pass of a render
-    std::uint32_t paths = 0;         ///< emitted in this pass
+    std::uint64_t pass = 0;   ///< a different one for each pass of a render
+    std::uint32_t paths = 0;  ///< emitted in this pass
 };
 
 struct CausticPass {
-    PhotonList photons;              ///< L S+ D
+    PhotonList photons;  ///< L S+ D
     std::vector<UsefulEmission> useful;
     std::uint64_t rays = 0, emitted = 0;
-    EnergyBalance energy;            ///< of the pass, scene units
+    EnergyBalance energy;  ///< of the pass, scene units
 };
 
 struct GlobalPass {
     std::vector<GlobalPhoton> photons;
     std::uint64_t rays = 0, emitted = 0;
-    EnergyBalance energy;            ///< of the pass, scene units
+    EnergyBalance energy;  ///< of the pass, scene units
 };
 
 /// L S+ D photons by guided emission. `visible`: photons outside of it are dropped, and not useful (null: all are). `tally`
 /// counts what became of the paths (null: nobody asks).
 [[nodiscard]] CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, const PhotonPassKey& key,
-                                              const VisibleCells* visible, const Workers& workers, CasterTally* tally = nullptr);
+                                              const VisibleCells* visible, const Workers& workers,
+                                              CasterTally* tally = nullptr);
 
 /// All photons that arrive at D vertices, lights by power.
 [[nodiscard]] GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, const Workers& workers);

@@ -29,14 +29,15 @@ struct GlobalPhoton {
 };
 
 struct RadianceMapOptions {
-    int neighbours = 24;      ///< photons in the density estimate
-    float maxRadius = 0.2F;   ///< scene units
-    int lampSamples = 4;      ///< shadow rays a point for its direct light
+    int neighbours = 24;     ///< photons in the density estimate
+    float maxRadius = 0.2F;  ///< scene units
+    int lampSamples = 4;     ///< shadow rays a point for its direct light
     std::uint64_t seed = 0;
 };
 
 /// Where gather rays from `points` land, after one D vertex or (a quarter of them) two: `count` tries, by key.
-[[nodiscard]] std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::vector<GatherPoint>& points, std::size_t count,
+[[nodiscard]] std::vector<GatherPoint> findPlaces(const TransportContext& context,
+                                                  const std::vector<GatherPoint>& points, std::size_t count,
                                                   std::uint64_t seed, const Workers& workers);
 
 class RadianceMap {

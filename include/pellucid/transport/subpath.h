@@ -20,9 +20,9 @@ namespace pellucid {
 /// Rules that hold for both ends.
 struct SubpathRules {
     bool powerHeuristic = true;
-    float rouletteThreshold = 1.0F;   ///< 0: no Russian roulette
-    int maxDepth = 0;                 ///< surface vertices of a whole path; 0: no limit
-    std::uint32_t lightPaths = 1;     ///< that may splat on a pixel for each eye path through it
+    float rouletteThreshold = 1.0F;  ///< 0: no Russian roulette
+    int maxDepth = 0;                ///< surface vertices of a whole path; 0: no limit
+    std::uint32_t lightPaths = 1;    ///< that may splat on a pixel for each eye path through it
 
     /// What the heuristic makes of a ratio of densities. [Veach1997, 9.2]
     [[nodiscard]] double power(double ratio) const noexcept { return powerHeuristic ? ratio * ratio : ratio; }
@@ -30,16 +30,17 @@ struct SubpathRules {
 
 /// Sums of ratios of densities, each raised by SubpathRules::power. Double: they are products of squares.
 struct MisSums {
-    double connect = 0.0;   ///< dVCM: of the technique that connects this vertex's predecessor to what lies behind it
-    double onward = 0.0;    ///< dVC: of all techniques that connect farther back, still without the density of the way back
+    double connect = 0.0;  ///< dVCM: of the technique that connects this vertex's predecessor to what lies behind it
+    double onward =
+        0.0;  ///< dVC: of all techniques that connect farther back, still without the density of the way back
 };
 
 struct PathVertex {
     SurfaceHit hit;
-    Bsdf bsdf;                   ///< seen from the vertex before
-    glm::vec3 toPrevious;        ///< unit
-    Rgb throughput;              ///< of the path that arrives: a factor of radiance from the eye, W from a light
-    Rgb absorption;              ///< of the medium that it arrived through
+    Bsdf bsdf;             ///< seen from the vertex before
+    glm::vec3 toPrevious;  ///< unit
+    Rgb throughput;        ///< of the path that arrives: a factor of radiance from the eye, W from a light
+    Rgb absorption;        ///< of the medium that it arrived through
     MisSums mis;
     glm::vec3 horizon;           ///< for light sampling here; zero where light may come from behind
     PathString before;           ///< eye paths: the vertices before this one
@@ -50,8 +51,8 @@ struct PathVertex {
 /// light path over |cos ng| of it, so that it acts on arriving flux.
 struct VertexValue {
     std::array<Rgb, 3> byKind{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};
-    float pdfOnward = 0.0F;      ///< per solid angle: of this path going on in the direction
-    float pdfBack = 0.0F;        ///< of a path from there going on to the vertex before
+    float pdfOnward = 0.0F;  ///< per solid angle: of this path going on in the direction
+    float pdfBack = 0.0F;    ///< of a path from there going on to the vertex before
     [[nodiscard]] Rgb total() const noexcept { return byKind[0] + byKind[1] + byKind[2]; }
 };
 
@@ -60,7 +61,8 @@ class Subpath {
 public:
     enum class From : std::uint8_t { Eye, Light };
 
-    Subpath(const Scene& scene, const SubpathRules& rules, From from) noexcept : scene_(scene), rules_(rules), from_(from) {}
+    Subpath(const Scene& scene, const SubpathRules& rules, From from) noexcept
+        : scene_(scene), rules_(rules), from_(from) {}
 
     void startAtEye(const Camera& camera, const Ray& ray) noexcept;
     /// Emits from a light chosen by power; uses the sampler's first three dimensions. False: it chose darkness.
@@ -75,7 +77,8 @@ public:
     [[nodiscard]] const PathVertex& last() const noexcept { return vertices_.back(); }
 
     /// The scattering at one of its vertices towards `direction`. Empty: nothing.
-    [[nodiscard]] std::optional<VertexValue> valueTowards(const PathVertex& v, const glm::vec3& direction) const noexcept;
+    [[nodiscard]] std::optional<VertexValue> valueTowards(const PathVertex& v,
+                                                          const glm::vec3& direction) const noexcept;
 
     /// Eye paths: radiance that the last vertex emits, or the environment after advance() said false, with its weight.
     [[nodiscard]] Rgb emitted() const noexcept;
@@ -87,12 +90,13 @@ private:
     struct Start {
         const Camera* camera = nullptr;
         std::uint32_t light = 0;
-        float pdfEmission = 0.0F;        ///< of the point (with the choice of the light) times that of the direction
-        float cosine = 1.0F;             ///< at the light
+        float pdfEmission = 0.0F;  ///< of the point (with the choice of the light) times that of the direction
+        float cosine = 1.0F;       ///< at the light
         bool delta = false, infinite = false;
     };
     void begin(const Ray& ray, const Rgb& throughput) noexcept;
-    [[nodiscard]] MisSums sumsAtFirst(const glm::vec3& point, const glm::vec3& horizon, float cosine, float distance) const noexcept;
+    [[nodiscard]] MisSums sumsAtFirst(const glm::vec3& point, const glm::vec3& horizon, float cosine,
+                                      float distance) const noexcept;
     [[nodiscard]] bool deltaStep(PathVertex& v, const BsdfSample& sample, const Bsdf& other, float cosOut) noexcept;
     [[nodiscard]] bool glossyStep(PathVertex& v, const BsdfSample& sample, float cosOut, float chooseKind) noexcept;
     [[nodiscard]] bool survives(float before, float etaScale, float u) noexcept;
@@ -107,7 +111,7 @@ private:
     Rgb throughput_{1.0F}, absorption_{0.0F};
     float etaScale_ = 1.0F;
     bool escaped_ = false;
-    MisSums mis_;                        ///< of the next vertex, before the factors of its distance and cosine
+    MisSums mis_;  ///< of the next vertex, before the factors of its distance and cosine
     PathString string_;
 };
 

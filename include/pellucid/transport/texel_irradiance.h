@@ -22,7 +22,8 @@ namespace pellucid {
 class TexelIrradiance {
 public:
     /// `width`: of a coarse texel (h), scene units.
-    TexelIrradiance(const Scene& scene, const Camera& camera, float width) : scene_(scene), camera_(camera), width_(width) {}
+    TexelIrradiance(const Scene& scene, const Camera& camera, float width)
+        : scene_(scene), camera_(camera), width_(width) {}
 
     /// One iteration, part one: an eye path a pixel over S lobes to a D vertex. Keeps the texels that they meet.
     void look(std::uint64_t seed, std::uint32_t pass, const Workers& workers);
@@ -39,18 +40,20 @@ public:
 private:
     /// A coarse texel: one of n^2 parts of one side of a triangle.
     struct Key {
-        std::uint32_t geometry = 0, primitive = 0, row = 0, column = 0;  ///< lowest bits of row: upper half; of column: back side
+        std::uint32_t geometry = 0, primitive = 0, row = 0,
+                      column = 0;  ///< lowest bits of row: upper half; of column: back side
         bool operator==(const Key&) const = default;
     };
     struct KeyHash {
         std::size_t operator()(const Key& k) const noexcept {
-            return hashCombine(static_cast<std::uint64_t>(k.geometry) << 32U | k.primitive, static_cast<std::uint64_t>(k.row) << 32U | k.column);
+            return hashCombine(static_cast<std::uint64_t>(k.geometry) << 32U | k.primitive,
+                               static_cast<std::uint64_t>(k.row) << 32U | k.column);
         }
     };
     struct Texel {
-        double sum[2][4][6] = {};    ///< odd or even passes; quarter; E and E5 (surface/bsdf.h), W
+        double sum[2][4][6] = {};  ///< odd or even passes; quarter; E and E5 (surface/bsdf.h), W
         std::uint32_t firstPass = 0;
-        double area = 0.0;           ///< of the whole texel
+        double area = 0.0;  ///< of the whole texel
     };
     struct Place {
         Key key;
@@ -60,10 +63,11 @@ private:
     struct Look {
         std::uint32_t pixel = 0;
         Place place;
-        Rgb weight{0.0F};            ///< throughput x rho / pi x T(wo)
+        Rgb weight{0.0F};  ///< throughput x rho / pi x T(wo)
         DiffuseLobe lobe;
     };
-    [[nodiscard]] Place placeOf(std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric, bool back) const noexcept;
+    [[nodiscard]] Place placeOf(std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric,
+                                bool back) const noexcept;
     void lookThrough(std::uint32_t pixel, Sampler& sampler, std::vector<Look>& looks, std::uint64_t& rays) const;
 
     const Scene& scene_;

@@ -30,10 +30,14 @@ public:
 
 private:
     static constexpr std::uint64_t kBits = 1U << 21U;
-    [[nodiscard]] glm::ivec3 cell(const glm::vec3& p) const noexcept { return glm::ivec3(glm::floor(p * inverseSize_)); }
+    [[nodiscard]] glm::ivec3 cell(const glm::vec3& p) const noexcept {
+        return glm::ivec3(glm::floor(p * inverseSize_));
+    }
     [[nodiscard]] static std::uint64_t slot(const glm::ivec3& c) noexcept {
         const auto u = [](int v) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v)); };
-        return hash64(u(c.x) * 0x9e3779b97f4a7c15ULL ^ u(c.y) * 0xc2b2ae3d27d4eb4fULL ^ u(c.z) * 0x165667b19e3779f9ULL) & (kBits - 1);
+        return hash64(u(c.x) * 0x9e3779b97f4a7c15ULL ^ u(c.y) * 0xc2b2ae3d27d4eb4fULL ^
+                      u(c.z) * 0x165667b19e3779f9ULL) &
+               (kBits - 1);
     }
     [[nodiscard]] bool test(const glm::ivec3& c) const noexcept {
         const std::uint64_t h = slot(c);

@@ -22,10 +22,11 @@ struct Maps {
     const CausticMap* caustic = nullptr;
     /// Beside the cache eye paths follow S chains to the lamps: for all caustics, or with a caustic map for a share of them.
     bool causticChains = false;
-    float photonsPerEtendue = 0.0F;   ///< with both: photon paths of a pass, and how many times denser the guide makes them
+    float photonsPerEtendue =
+        0.0F;  ///< with both: photon paths of a pass, and how many times denser the guide makes them
     const RadianceMap* global = nullptr;
     const IrradianceCache* cache = nullptr;
-    float causticRadiusMin = 0.0F;    ///< in scene units
+    float causticRadiusMin = 0.0F;  ///< in scene units
     float causticRadiusMax = 1.0F;
 
     /// Whether light over S alone is kept out of cache and gather.
@@ -41,10 +42,10 @@ struct TransportOptions {
     Directions directions = Directions::Bsdf;
     LightStrategy lights = LightStrategy::Both;
     bool powerHeuristic = true;
-    float rouletteThreshold = 1.0F;   ///< 0: no Russian roulette
-    int maxDepth = 0;                 ///< surface vertices; 0: no limit
-    LeftClasses left;                 ///< classes that others carry
-    bool splitLampChains = false;     ///< E S* L over glass: by LampChains, not by chance
+    float rouletteThreshold = 1.0F;  ///< 0: no Russian roulette
+    int maxDepth = 0;                ///< surface vertices; 0: no limit
+    LeftClasses left;                ///< classes that others carry
+    bool splitLampChains = false;    ///< E S* L over glass: by LampChains, not by chance
 };
 
 struct TransportContext {
@@ -57,9 +58,9 @@ struct TransportContext {
 struct FirstHit {
     Rgb albedo{0.0F};
     glm::vec3 normal{0.0F};
-    float depth = 0.0F;               ///< scene units; 0: nothing was hit
-    float kernelRadius = 0.0F;        ///< of the caustic look-up, scene units
-    float kernelPhotons = 0.0F;       ///< that it met
+    float depth = 0.0F;          ///< scene units; 0: nothing was hit
+    float kernelRadius = 0.0F;   ///< of the caustic look-up, scene units
+    float kernelPhotons = 0.0F;  ///< that it met
 
     /// For means over samples.
     void addShare(const FirstHit& other, float weight) noexcept {
@@ -75,10 +76,10 @@ struct FirstHit {
 struct GatherPoint {
     bool valid = false;
     glm::vec3 position{0.0F}, normal{0.0F}, geometricNormal{0.0F};
-    float footprint = 0.0F;           ///< width of a pixel there, scene units
-    Rgb absorption{0.0F};             ///< of the medium in which the gather rays start
+    float footprint = 0.0F;  ///< width of a pixel there, scene units
+    Rgb absorption{0.0F};    ///< of the medium in which the gather rays start
     DiffuseLobe lobe;
-    float throughput = 0.0F;          ///< luminance of the path's throughput there
+    float throughput = 0.0F;  ///< luminance of the path's throughput there
     float directLuminance = 0.0F;
 };
 
@@ -86,8 +87,8 @@ struct GatherPoint {
 struct WalkRay {
     Ray ray;
     float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;
-    Rgb absorption{0.0F};             ///< of the medium, per scene unit
-    float kernelFootprints = 1.0F;    ///< radius of the caustic kernel, in pixel footprints
+    Rgb absorption{0.0F};           ///< of the medium, per scene unit
+    float kernelFootprints = 1.0F;  ///< radius of the caustic kernel, in pixel footprints
 };
 
 class Walk {
@@ -121,7 +122,8 @@ private:
     [[nodiscard]] float chainShare(const State& state, std::uint32_t light, const glm::vec3& towards) const noexcept;
     void addEscaped(State& state) const noexcept;
     void addEmitted(State& state, const SurfaceHit& hit) const noexcept;
-    [[nodiscard]] LobeKinds serveDiffuse(State& state, const Vertex& vertex, Sampler& sampler, FirstHit* first) noexcept;
+    [[nodiscard]] LobeKinds serveDiffuse(State& state, const Vertex& vertex, Sampler& sampler,
+                                         FirstHit* first) noexcept;
     void addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] bool scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] float misWeight(float mine, float other) const noexcept;
@@ -142,7 +144,8 @@ private:
 
 /// The shadow ray from a surface point to a light sample, aimed from the offset origin at the very point that was sampled:
 /// along wi itself the ray would run beside it and meet the lamp early where it leaves the lamp at a flat angle.
-[[nodiscard]] inline Ray shadowRay(const glm::vec3& position, const glm::vec3& side, const glm::vec3& wi, float distance) noexcept {
+[[nodiscard]] inline Ray shadowRay(const glm::vec3& position, const glm::vec3& side, const glm::vec3& wi,
+                                   float distance) noexcept {
     Ray ray{offsetOrigin(position, side), wi, distance};
     if (!std::isfinite(distance)) return ray;
     const glm::vec3 to = position + wi * distance - ray.origin;

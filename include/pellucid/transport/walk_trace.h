@@ -14,15 +14,15 @@
 namespace pellucid {
 
 struct TracedVertex {
-    bool hit = true;                       ///< false: the ray left the scene
-    glm::vec3 position{0.0F};              ///< scene units; the direction where nothing was hit
-    glm::vec3 normal{0.0F};                ///< shading normal
-    float distance = 0.0F;                 ///< from the vertex before, scene units
+    bool hit = true;           ///< false: the ray left the scene
+    glm::vec3 position{0.0F};  ///< scene units; the direction where nothing was hit
+    glm::vec3 normal{0.0F};    ///< shading normal
+    float distance = 0.0F;     ///< from the vertex before, scene units
     std::uint32_t geometry = 0, primitive = 0, material = 0;
     LobeKinds kinds = kNoLobe;
     bool backSide = false;
-    Rgb throughput{1.0F};                  ///< on arrival
-    LayeredRadiance before;                ///< gathered before this vertex
+    Rgb throughput{1.0F};    ///< on arrival
+    LayeredRadiance before;  ///< gathered before this vertex
 };
 
 using WalkTrace = std::vector<TracedVertex>;
