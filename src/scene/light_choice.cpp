@@ -167,8 +167,7 @@ float LightChoice::flatShare(float flatSum, const glm::vec3& point, const glm::v
     return std::clamp(flatSum / (flatSum + treeSum), 0.2F, 0.8F);
 }
 
-std::optional<LightChoice::Choice> LightChoice::choose(const glm::vec3& point, const glm::vec3& normal,
-                                                       float u) const noexcept {
+std::optional<LightPick> LightChoice::choose(const glm::vec3& point, const glm::vec3& normal, float u) const noexcept {
     const Weights weights = weigh(point, normal);
     const float share = flatShare(weights.sum, point, normal);
     if (u >= share || !(weights.sum > 0.0F)) {
@@ -176,11 +175,11 @@ std::optional<LightChoice::Choice> LightChoice::choose(const glm::vec3& point, c
             (static_cast<double>(u) - static_cast<double>(share)) / (1.0 - static_cast<double>(share));
         const auto choice = share < 1.0F ? tree_.choose(point, normal, std::max(0.0, remapped)) : std::nullopt;
         if (!choice) return std::nullopt;
-        return Choice{choice->light, (1.0F - share) * static_cast<float>(choice->pmf)};
+        return LightPick{choice->light, (1.0F - share) * static_cast<float>(choice->pmf)};
     }
     const float target = u / share;
     float passed = 0.0F;
-    Choice last;
+    LightPick last;
     for (std::size_t i = 0; i < flat_.size(); ++i) {
         const float p = weights.probability(i < kFewLights ? weights.kept[i] : weight(flat_[i], point, normal));
         if (!(p > 0.0F)) continue;

@@ -17,18 +17,14 @@ namespace pellucid {
 
 class LightChoice {
 public:
-    struct Choice {
-        std::uint32_t light = 0;
-        float pmf = 0.0F;
-    };
-
     LightChoice() = default;
     /// Keeps a pointer to `parts`; `entries` lists the finite lights before those at infinity.
     LightChoice(const Lights::Parts& parts, const std::vector<LightEntry>& entries);
 
     /// `normal` zero: no horizon. A light that cannot reach the point (below the horizon, behind a one-sided lamp,
     /// outside of a cone) has probability 0, every other one a positive one.
-    [[nodiscard]] std::optional<Choice> choose(const glm::vec3& point, const glm::vec3& normal, float u) const noexcept;
+    [[nodiscard]] std::optional<LightPick> choose(const glm::vec3& point, const glm::vec3& normal,
+                                                  float u) const noexcept;
     [[nodiscard]] float pmf(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal) const noexcept;
 
 private:

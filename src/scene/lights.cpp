@@ -146,14 +146,16 @@ void Lights::Impl::towardsEnvironment(const glm::vec2& u, LightSample& sample) c
     sample.radiance = parts.environment->radiance(sample.wi);
 }
 
-std::optional<LightSample> Lights::sample(const glm::vec3& point, const glm::vec3& normal, float chooseLight,
-                                          const glm::vec2& u) const noexcept {
-    const auto choice = impl_->choice.choose(point, normal, chooseLight);
-    if (!choice) return std::nullopt;
-    const LightEntry& entry = impl_->entries[choice->light];
+std::optional<LightPick> Lights::choose(const glm::vec3& point, const glm::vec3& normal, float u) const noexcept {
+    return impl_->choice.choose(point, normal, u);
+}
+
+std::optional<LightSample> Lights::sampleFrom(const LightPick& pick, const glm::vec3& point, const glm::vec3& normal,
+                                              const glm::vec2& u) const noexcept {
+    const LightEntry& entry = impl_->entries[pick.light];
     LightSample sample;
-    sample.light = choice->light;
-    sample.pdfSolidAngle = choice->pmf;
+    sample.light = pick.light;
+    sample.pdfSolidAngle = pick.pmf;
     if (entry.kind == LightKind::Triangle)
         impl_->towardsTriangle(impl_->parts.triangles[entry.index], point, u, sample);
     else if (entry.kind == LightKind::Environment)
@@ -162,6 +164,24 @@ std::optional<LightSample> Lights::sample(const glm::vec3& point, const glm::vec
         impl_->towardsPunctual(entry, point, sample);
     const bool useful = !isBlack(sample.radiance) && isFinite(sample.radiance) && sample.pdfSolidAngle > 0.0F &&
                         std::isfinite(sample.pdfSolidAngle) && !belowHorizon(normal, sample.wi);
+    return useful ? std::optional(sample) : std::nullopt;
+}
+
+std::optional<LightSample> Lights::sample(const glm::vec3& point, const glm::vec3& normal, float chooseLight,
+                                          const glm::vec2& u) const noexcept {
+    const auto pick = choose(point, normal, chooseLight);
+    return pick ? sampleFrom(*pick, point, normal, u) : std::nullopt;
+}
+
+std::optional<LightSample> Lights::towardsEnvironment(const LightPick& sky, const glm::vec3& normal,
+                                                      const glm::vec3& wi) const noexcept {
+    LightSample sample;
+    sample.light = sky.light;
+    sample.wi = wi;
+    sample.distance = kInfinity;
+    sample.radiance = impl_->parts.environment->radiance(wi);
+    sample.pdfSolidAngle = sky.pmf * impl_->parts.environment->pdf(wi);
+    const bool useful = !isBlack(sample.radiance) && isFinite(sample.radiance) && !belowHorizon(normal, wi);
     return useful ? std::optional(sample) : std::nullopt;
 }
 

@@ -10,6 +10,7 @@
 #include <pellucid/transport/radiance_map.h>
 
 #include "medium.h"
+#include "walk_state.h"
 
 namespace pellucid {
 
@@ -34,106 +35,6 @@ enum VertexDimension : std::uint64_t {
 constexpr float kCornerRadii = 8.0F;
 
 }  // namespace
-
-/// How light behind the last D vertex is carried.
-enum class Behind : std::uint8_t {
-    NoReceiver,     ///< no D vertex yet
-    CausticMapped,  ///< the caustic map holds what comes over S alone
-    PathTraced      ///< everything is path traced
-};
-
-struct Walk::State {
-    WalkRay ray;
-    LayeredRadiance radiance;
-    Rgb throughput{1.0F};
-    EyeLedger ledger;
-    Behind behind = Behind::NoReceiver;
-    bool chainEmpty = true, chainSpecular = true;  ///< since the last D vertex (or the eye)
-    bool lampSampled = false;    ///< the last vertex did next-event estimation for the lobe that was sampled
-    bool skipDirect = false;     ///< a lamp met at once is counted elsewhere
-    float pdfSolidAngle = 0.0F;  ///< of the direction, over the sampled lobes
-    glm::vec3 lightPoint{0.0F}, lightNormal{0.0F};  ///< where next-event estimation stood
-    float etaScale = 1.0F, pathLength = 0.0F;
-    int vertices = 0;
-    bool gathering = false;      ///< behind the first D vertex: the global map may answer
-    bool deltaChain = true;      ///< from the eye: no other lobe so far
-    bool lampsFollowed = false;  ///< over that chain, by LampChains
-    bool chainsNext = false;     ///< at this D vertex: the cache has served all but the caustics
-    bool sharedNext = false;     ///< at this D vertex: photons have brought their share of the caustics
-    bool onlyChains = false;     ///< behind it: S lobes alone go on
-    bool chainsShared = false;   ///< behind it: what comes over S alone has the eye's share only
-    float kernelRadius = 0.0F;   ///< at that D vertex
-    bool causticServed = false;  ///< at this D vertex: what comes over S alone is counted
-
-    /// Whether light that is met now has come over S alone to a receiver whose caustics photons share.
-    [[nodiscard]] bool hasSharedChain() const noexcept { return chainsShared && chainSpecular && !chainEmpty; }
-    /// Whether a lamp that is met now belongs to path tracing.
-    [[nodiscard]] bool lampCounts(const LeftClasses& left) const noexcept {
-        if (left.has(ledger.path()) || (deltaChain && lampsFollowed)) return false;
-        if (chainEmpty) return !skipDirect;
-        return behind != Behind::CausticMapped || !chainSpecular;
-    }
-};
-
-struct Walk::Vertex {
-    const SurfaceHit& hit;
-    const Bsdf& bsdf;
-    glm::vec3 wo;
-    float footprint;
-    glm::vec3 lightNormal;  ///< horizon for light sampling; zero where light may come from behind
-};
-
-float Walk::misWeight(float mine, float other) const noexcept {
-    if (!(mine > 0.0F)) return 0.0F;
-    if (!std::isfinite(mine)) return 1.0F;
-    const float ratio = other / mine;
-    return context_.options.powerHeuristic ? 1.0F / (1.0F + ratio * ratio) : 1.0F / (1.0F + ratio);
-}
-
-float Walk::hitWeight(float pdfSampled, float pdfLight) const noexcept {
-    switch (context_.options.lights) {
-        case LightStrategy::Chance:
-            return 1.0F;
-        case LightStrategy::NextEvent:
-            return pdfLight > 0.0F ? 0.0F : 1.0F;
-        case LightStrategy::Both:
-            break;
-    }
-    return misWeight(pdfSampled, pdfLight);
-}
-
-/// The eye's share of light that `light` sends over S alone; `towards` points to it.
-float Walk::chainShare(const State& state, std::uint32_t light, const glm::vec3& towards) const noexcept {
-    return chanceShare(state.kernelRadius, context_.maps.photonsPerEtendue,
-                       context_.scene.lights().etendueDensity(light, -towards));
-}
-
-void Walk::addEscaped(State& state) const noexcept {
-    const Environment* environment = context_.scene.environment();
-    if (environment == nullptr || !state.lampCounts(context_.options.left)) return;
-    float weight = 1.0F;
-    if (state.lampSampled)
-        weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfEnvironment(
-                                                    state.lightPoint, state.lightNormal, state.ray.ray.direction));
-    if (state.hasSharedChain())
-        weight *= chainShare(state, context_.scene.lights().environmentLight(), state.ray.ray.direction);
-    state.radiance.add(state.ledger.path(), state.throughput * environment->radiance(state.ray.ray.direction) * weight);
-}
-
-void Walk::addEmitted(State& state, const SurfaceHit& hit) const noexcept {
-    if (!state.lampCounts(context_.options.left)) return;
-    const Rgb emitted = context_.scene.surfaces().emittedRadiance(hit.point, -state.ray.ray.direction);
-    if (isBlack(emitted)) return;
-    float weight = 1.0F;
-    if (state.lampSampled)
-        weight = hitWeight(state.pdfSolidAngle, context_.scene.lights().pdfTriangle(
-                                                    state.lightPoint, state.lightNormal, hit.point.geometry,
-                                                    hit.point.primitive, state.ray.ray.direction, hit.distance));
-    if (state.hasSharedChain())
-        weight *= chainShare(state, context_.scene.lights().lightOf(hit.point.geometry, hit.point.primitive),
-                             state.ray.ray.direction);
-    state.radiance.add(state.ledger.path(), state.throughput * emitted * weight);
-}
 
 /// Hands the D lobe to the maps. Returns kDiffuse when path tracing has to carry it on.
 LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sampler, FirstHit* first) noexcept {
@@ -193,53 +94,6 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         ++cacheMisses_;  // gathers once: the walk simply goes on
     }
     return kDiffuse;
-}
-
-/// Next-event estimation for `kinds`; those that are also `sampled` share the class with sampling by MIS.
-void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
-                     Sampler& sampler) noexcept {
-    const float choice = sampler.next1D();
-    const glm::vec2 u = sampler.next2D();
-    const glm::vec3& position = vertex.hit.point.position;
-    const auto light = context_.scene.lights().sample(position, vertex.lightNormal, choice, u);
-    if (!light || !(light->pdfSolidAngle > 0.0F)) return;
-    const bool weighted = context_.options.lights == LightStrategy::Both && !light->delta;
-    std::array<Rgb, 3> sum{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};  // by kind
-    if (kinds == sampled && (kinds & (kinds - 1)) == 0 && context_.options.directions == Directions::Bsdf) {
-        // One kind of lobe, which is sampled too: value and density in one go.
-        const BsdfValue v = vertex.bsdf.evaluate(vertex.wo, light->wi, kinds, TransportMode::Radiance);
-        sum[kinds == kSpecular ? 0U
-            : kinds == kGlossy ? 1U
-                               : 2U] = v.value * misWeight(light->pdfSolidAngle, weighted ? v.pdfSolidAngle : 0.0F);
-    } else {
-        const float pdfSampled =
-            weighted ? vertex.bsdf.pdf(vertex.wo, light->wi, sampled, context_.options.directions) : 0.0F;
-        const float shared = misWeight(light->pdfSolidAngle, pdfSampled);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto kind = static_cast<LobeKinds>(1U << i);
-            if ((kinds & kind) == kNoLobe) continue;
-            const Rgb f = vertex.bsdf.eval(vertex.wo, light->wi, kind, TransportMode::Radiance);
-            if (!isBlack(f)) sum[i] = f * ((sampled & kind) != kNoLobe ? shared : 1.0F);
-        }
-    }
-    if (isBlack(sum[0] + sum[1] + sum[2])) return;
-    const glm::vec3& ng = vertex.bsdf.geometricNormal();
-    const Ray shadow = shadowRay(position, glm::dot(light->wi, ng) >= 0.0F ? ng : -ng, light->wi, light->distance);
-    ++rays_;
-    const float visible = shadow.tMax > 0.0F ? context_.scene.visibility(shadow) : 1.0F;
-    if (visible <= 0.0F) return;
-    Rgb arriving = light->radiance * (visible / light->pdfSolidAngle);
-    const bool through = glm::dot(light->wi, ng) < 0.0F;
-    arriving *= medium::transmittance(
-        medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, through),
-        light->distance);
-    for (std::size_t i = 0; i < 3; ++i)
-        if (!isBlack(sum[i])) {
-            const bool shared = i == 0 && state.chainsShared && state.chainSpecular;  // over S alone
-            state.radiance.add(
-                state.ledger.pathAfter(static_cast<LobeKinds>(1U << i)),
-                state.throughput * arriving * sum[i] * (shared ? chainShare(state, light->light, light->wi) : 1.0F));
-        }
 }
 
 /// Samples the next direction among `sampled` lobes, with roulette. False: the walk ends.

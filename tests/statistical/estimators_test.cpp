@@ -43,6 +43,28 @@ TEST_P(Estimators, BidirectionalMeansWhatPathTracingMeans) {
 
 INSTANTIATE_TEST_SUITE_P(SmallScenes, Estimators, ::testing::Range(0, 7));
 
+/// The photon method has no direction of a D lobe to meet the sky with: it resamples next-event estimation, unbiased.
+TEST(Estimators, ResampledSkyMeansTheSkyOfPathTracing) {
+    const Workers workers;
+    int skies = 0;
+    for (const SmallScene& small : smallScenes()) {
+        if (!small.environment) continue;
+        ++skies;
+        const Scene scene = made(small, workers);
+        Rendering path{Method::Path, 64};
+        path.width = path.height = 24;
+        Rendering photon = path;
+        photon.method = Method::Photon;
+        photon.samples = 32;
+        photon.firstSeed = 1000;
+        photon.settings.globalPhotons = 5'000;
+        const Agreement agreement = agreementOf(valuesOf(renderSeeds(scene, path, workers), 2, "direct"),
+                                                valuesOf(renderSeeds(scene, photon, workers), 2, "direct"));
+        EXPECT_TRUE(agreement.holds(sidakLevel(3))) << small.name << ": " << agreement;
+    }
+    EXPECT_GE(skies, 1);
+}
+
 /// The ladder of sampling: each rung is unbiased.
 TEST(SamplingLadder, EveryRungMeansTheSameImage) {
     // Plastic, rough metal and a large lamp: no rung's noise has long tails, so that t-tests hold.

@@ -42,6 +42,12 @@ struct DirectionalEmitter {
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional, Triangle, Environment };
 
+/// One light among all, chosen with probability `pmf`.
+struct LightPick {
+    std::uint32_t light = 0;
+    float pmf = 0.0F;
+};
+
 /// A light seen from a shading point. The estimate is f |cos| * radiance / pdfSolidAngle, for delta lights too.
 struct LightSample {
     glm::vec3 wi{0.0F};     ///< unit, to the light
@@ -113,6 +119,16 @@ public:
     /// horizon.
     [[nodiscard]] std::optional<LightSample> sample(const glm::vec3& point, const glm::vec3& normal, float chooseLight,
                                                     const glm::vec2& u) const noexcept;
+
+    /// sample() in two steps: the choice, then a point on that light.
+    [[nodiscard]] std::optional<LightPick> choose(const glm::vec3& point, const glm::vec3& normal,
+                                                  float u) const noexcept;
+    [[nodiscard]] std::optional<LightSample> sampleFrom(const LightPick& pick, const glm::vec3& point,
+                                                        const glm::vec3& normal, const glm::vec2& u) const noexcept;
+
+    /// The environment, picked as `sky`, in direction `wi`: as sampleFrom() would give it. Empty: black or below the horizon.
+    [[nodiscard]] std::optional<LightSample> towardsEnvironment(const LightPick& sky, const glm::vec3& normal,
+                                                                const glm::vec3& wi) const noexcept;
 
     /// Probability with which sample() from (point, normal) chooses `light`. Over few lights it sums to 1, or to 0
     /// where none reaches the point; over many to at most 1, since the tree may end at a light that proves out of

@@ -3,6 +3,7 @@
 /// transport/path_classes.h gives it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include <pellucid/math/sampler.h>
@@ -124,6 +125,11 @@ private:
     void addEmitted(State& state, const SurfaceHit& hit) const noexcept;
     [[nodiscard]] LobeKinds serveDiffuse(State& state, const Vertex& vertex, Sampler& sampler,
                                          FirstHit* first) noexcept;
+    [[nodiscard]] std::array<Rgb, 3> lobesTowards(const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
+                                                  const LightSample& light) const noexcept;
+    [[nodiscard]] bool resampleEnvironment(const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
+                                           const LightPick& sky, const glm::vec2& u, Sampler& sampler,
+                                           LightSample& seen, std::array<Rgb, 3>& lobes) const noexcept;
     void addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] bool scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] float misWeight(float mine, float other) const noexcept;
