@@ -52,6 +52,10 @@ constexpr float kMaxCausticRadius = 0.05F;  ///< of the scene's radius
 constexpr double kDefaultError = 0.05;
 /// Iterations before pixels are told apart by their noise.
 constexpr std::uint32_t kUniformIterations = 4;
+/// Samples of a pixel in those, beside a caustic map: its photons take their time once an iteration, and where the first
+/// seconds are noisy it is from the eye. Of short budgets of time one: an iteration more is worth more.
+constexpr std::uint8_t kFirstShare = 2;
+constexpr double kShortBudget = 3.0;
 /// Caustic photon paths of an iteration, whatever noise asks for.
 constexpr double kFewestPaths = 4e3, kMostPaths = 4e6;
 /// Iterations before the radii of kernels are corrected by noise and bias.
@@ -387,6 +391,8 @@ void Renderer::prepare() {
     context_.options.splitLampChains = plan_.splitLampChains;
     context_.maps.causticChains = plan_.causticChains;
     setCausticPaths(plan_.causticPaths);
+    if (plan_.adaptive && plan_.causticMap && request_.budget.seconds.value_or(2.0 * kShortBudget) > kShortBudget)
+        film_.setShares(std::vector<std::uint8_t>(film_.pixels(), kFirstShare));
     if (!request_.windows.empty()) keepWindows();
     if (!request_.cacheFile.empty()) loadLight();
 }
