@@ -12,6 +12,16 @@ constexpr SealedKind kCheckpoint{"pellucid checkpoint 4\n", "the checkpoint", "d
 
 }  // namespace
 
+CheckpointKey checkpointKey(const Scene& scene, const RenderRequest& request, const Camera& camera) {
+    std::string key = scene.hash() + "|" + std::to_string(static_cast<int>(request.method)) + "|" +
+                      std::to_string(request.seed) + "|" + request.camera + "|" + std::to_string(camera.width()) + "x" +
+                      std::to_string(camera.height());
+    for (const auto& [name, value] : settingsAsText(request.settings)) key += "|" + name + "=" + value;
+    for (const PixelWindow& w : request.windows)
+        for (const int side : {w.x0, w.y0, w.x1, w.y1}) key += "|" + std::to_string(side);
+    return {key};
+}
+
 std::string sealedCheckpoint(const std::string& body) { return seal(kCheckpoint, body); }
 
 void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key, const CheckpointState& state) {

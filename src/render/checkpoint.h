@@ -7,12 +7,18 @@
 #include <string>
 #include <vector>
 
+#include <pellucid/render/render.h>
+#include <pellucid/scene/scene.h>
+
 namespace pellucid {
 
-/// Scene hash, method, seed, camera, size and every setting.
+/// What made a checkpoint: only the same render goes on from it.
 struct CheckpointKey {
     std::string text;
 };
+
+/// Scene hash, method, seed, camera, size, windows and every setting.
+[[nodiscard]] CheckpointKey checkpointKey(const Scene& scene, const RenderRequest& request, const Camera& camera);
 
 struct CheckpointState {
     std::uint32_t iteration = 0, generation = 0;

@@ -6,11 +6,12 @@
 
 #include <pellucid/math/hash.h>
 
+#include "pass_keys.h"
+
 namespace pellucid {
 
 namespace {
 
-constexpr std::uint64_t kGlobalPass = 2ULL << 40U, kCachePass = 4ULL << 40U;
 /// Where the global map is evaluated for gather rays.
 constexpr std::size_t kPlaces = 60'000;
 /// Of the scene's radius: the largest kernel of the map.

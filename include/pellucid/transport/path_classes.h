@@ -50,8 +50,8 @@ public:
         if ((code_ & kOn) != 0) return;
         const unsigned letter = kind == kSpecular ? kS : kind == kGlossy ? kG : kD;
         unsigned place = 0;
-        while (place < 3 && (code_ >> (2 * place) & 3U) != 0) ++place;
-        if (letter == kS && place > 0 && (code_ >> (2 * place - 2) & 3U) == kS) return;
+        while (place < 3 && (unsigned{code_} >> (2 * place) & 3U) != 0) ++place;
+        if (letter == kS && place > 0 && (unsigned{code_} >> (2 * place - 2) & 3U) == kS) return;
         code_ = static_cast<std::uint8_t>(place < 3 ? code_ | letter << (2 * place) : code_ | kOn);
     }
     /// The same with everything behind it left open.

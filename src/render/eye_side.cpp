@@ -1,0 +1,127 @@
+#include "eye_side.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "pass_keys.h"
+#include "setting_choices.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kTile = 16;
+
+[[nodiscard]] int tilesIn(int pixels) noexcept { return (pixels + kTile - 1) / kTile; }
+
+[[nodiscard]] glm::vec2 cornerOf(PixelAt at) noexcept { return {static_cast<float>(at.x), static_cast<float>(at.y)}; }
+
+}  // namespace
+
+std::size_t EyeSide::tiles() const noexcept {
+    return static_cast<std::size_t>(tilesIn(view_.camera.width())) *
+           static_cast<std::size_t>(tilesIn(view_.camera.height()));
+}
+
+template <class Body>
+void EyeSide::forTiles(const Body& body) const {
+    const int across = tilesIn(view_.camera.width());
+    view_.workers.forEach(tiles(), 1, [&](std::size_t tile) {
+        const int x0 = static_cast<int>(tile) % across * kTile, y0 = static_cast<int>(tile) / across * kTile;
+        body(tile, [&](const auto& visit) {
+            for (int y = y0; y < std::min(y0 + kTile, view_.camera.height()); ++y)
+                for (int x = x0; x < std::min(x0 + kTile, view_.camera.width()); ++x) visit(PixelAt{x, y});
+        });
+    });
+}
+
+LayeredRadiance EyeSide::sample(Walk& walk, const Film& film, const CausticSide& caustics, PixelAt at, int number,
+                                FirstHit& first, StringSums* strings) const {
+    const std::size_t pixel = view_.pixelIndex(at.x, at.y);
+    const std::uint32_t before = view_.plan.adaptive ? film.taken(pixel) : film.samples();
+    Sampler sampler(view_.request.seed, pixel, before + static_cast<std::uint32_t>(number),
+                    samplerKind(view_.request.settings.sampler));
+    const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
+    const CameraRay ray = view_.camera.ray(cornerOf(at) + jitter, lens);
+    return walk.fromEye(
+        {ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), caustics.kernelFootprints(at.x, at.y)},
+        sampler, &first, strings);
+}
+
+void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const CausticSide& caustics, Film& film) const {
+    const std::size_t pixel = view_.pixelIndex(at.x, at.y);
+    const std::uint64_t before = walk.rays();
+    const int share = film.share(pixel);
+    LayeredRadiance sum;
+    FirstHit firsts;
+    strings.ofPixel.clear();
+    if (film.keepsStrings()) sum.strings = &strings.ofPixel;
+    for (int k = 0; k < share; ++k) {
+        FirstHit first;
+        strings.ofSample.clear();
+        const LayeredRadiance radiance =
+            sample(walk, film, caustics, at, k, first, film.keepsStrings() ? &strings.ofSample : nullptr);
+        if (!film.admit(pixel, film.samples(), radiance)) continue;
+        sum.addShare(radiance, 1.0F / static_cast<float>(share));
+        firsts.addShare(first, 1.0F / static_cast<float>(share));
+    }
+    film.add(pixel, film.samples(), sum, firsts, share, walk.rays() - before);
+}
+
+std::uint64_t EyeSide::pass(const TransportContext& context, const CausticSide& caustics, Film& film,
+                            RenderClock& clock) {
+    const StageTimer timer(stage_, clock, view_.pixels.scale());
+    std::vector<std::uint64_t> rays(tiles(), 0);
+    forTiles([&](std::size_t tile, const auto& forPixels) {
+        Walk walk(context);
+        Strings strings;
+        forPixels([&](PixelAt at) {
+            if (view_.pixels.contains(view_.pixelIndex(at.x, at.y))) addSamples(walk, strings, at, caustics, film);
+        });
+        rays[tile] = walk.rays();
+    });
+    film.countSamples(1);
+    const std::uint64_t total = view_.pixels.ofWholeImage(std::accumulate(rays.begin(), rays.end(), std::uint64_t{0}));
+    stage_.rays += total;
+    return total;
+}
+
+Bidirectional EyeSide::bidirectional() const noexcept {
+    return {view_.scene, view_.camera, view_.options, static_cast<std::uint32_t>(view_.pixelCount())};
+}
+
+LayeredRadiance EyeSide::sample(Bidirectional& paths, const Film& film, PixelAt at, std::vector<LightSplat>& splats,
+                                FirstHit& first, StringSums* strings) const {
+    const SamplerKind numbers = samplerKind(view_.request.settings.sampler);
+    const std::size_t pixel = view_.pixelIndex(at.x, at.y);
+    Sampler eye(view_.request.seed, pixel, film.samples(), numbers);
+    Sampler light(view_.request.seed, kBidirectionalPass + film.samples(), static_cast<std::uint32_t>(pixel), numbers);
+    const glm::vec2 jitter = eye.next2D(), lens = eye.next2D();
+    return paths.sample(view_.camera.ray(cornerOf(at) + jitter, lens).ray, eye, light, splats, &first, strings);
+}
+
+/// Splats wait in their tile and are added in the order of the tiles.
+void EyeSide::bidirectionalPass(std::vector<LightSplat> splats, Film& film) {
+    const StageTimer timer(stage_);
+    std::vector<std::uint64_t> rays(tiles(), 0);
+    std::vector<std::vector<LightSplat>> ofTile(tiles());
+    forTiles([&](std::size_t tile, const auto& forPixels) {
+        Bidirectional paths = bidirectional();
+        StringSums strings;
+        forPixels([&](PixelAt at) {
+            FirstHit first;
+            strings.clear();
+            const LayeredRadiance radiance =
+                sample(paths, film, at, ofTile[tile], first, film.keepsStrings() ? &strings : nullptr);
+            film.add(view_.pixelIndex(at.x, at.y), film.samples(), radiance, first);
+        });
+        rays[tile] = paths.rays();
+    });
+    for (const auto& s : ofTile) splats.insert(splats.end(), s.begin(), s.end());
+    film.addSplats(splats, film.samples());
+    film.countSamples(1);
+    stage_.rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    stage_.photonsEmitted += film.pixels();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,173 @@
+#include "indirect_light.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <pellucid/transport/caustic_map.h>
+
+#include "cache_builder.h"
+
+namespace pellucid {
+
+namespace {
+
+/// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
+constexpr double kGenerationShare = 1.5;
+/// Where indirect light is less than this part of the image, the next generation comes later in proportion, by up to this.
+constexpr double kMuchIndirect = 0.25, kMostPatience = 10.0;
+/// How much longer the next generation takes, about.
+constexpr double kGenerationGrowth = 1.5;
+/// Of a budget of time: a cache that is not full by then stays as it is, and what it lacks is traced.
+constexpr double kCacheShare = 0.7, kLaterCacheShare = 0.9;
+
+[[nodiscard]] std::size_t placesOf(const LearntLight& light) noexcept { return light.map ? light.map->points() : 0; }
+[[nodiscard]] std::size_t recordsOf(const LearntLight& light) noexcept {
+    return light.cache ? light.cache->records().size() : 0;
+}
+
+}  // namespace
+
+CacheKey fileKey(const PreparedView& view) {
+    return cacheKey(view.scene, resolvedSettings(view.request.settings, view.plan),
+                    view.plan.causticMap || view.plan.causticChains);
+}
+
+/// What was loaded is saved as soon as this view has added to it: a later generation would know this view alone.
+void IndirectLight::load() {
+    reuse_.asked = true;
+    if (!view_.plan.cache) return;
+    known_ = readCacheFile(view_.request.cacheFile, fileKey(view_), view_.scene.bounds());
+    loaded_ = known_.has_value();
+    raysLoaded_ = loaded_ ? known_->rays : 0.0;
+}
+
+/// If there is more to say than was read.
+void IndirectLight::save() const {
+    if (view_.request.cacheFile.empty() || !light_.cache || light_.rays == raysLoaded_) return;
+    writeCacheFile(view_.request.cacheFile, fileKey(view_), light_);
+}
+
+void IndirectLight::startFrom(std::optional<LearntLight> known, std::uint32_t generation) {
+    known_ = std::move(known);
+    generation_ = generation;
+}
+
+bool IndirectLight::due(std::uint32_t iteration, const Film& film, const StageRecord& eyes,
+                        const RenderClock& clock) const {
+    if (!view_.plan.cache || iteration == 0) return view_.plan.cache;
+    if (frozen_) return false;
+    if (raysSince_ <= kGenerationShare * raysOfGeneration_) return false;
+    // Where little light is indirect its records may be the worse.
+    const double patience = std::clamp(kMuchIndirect / std::max(film.indirectShare(), 1e-6), 1.0, kMostPatience);
+    if (raysSince_ <= kGenerationShare * patience * raysOfGeneration_) return false;
+    // Near the end of a budget of time a new one would not be used enough.
+    const std::optional<double>& budget = view_.request.budget.seconds;
+    const double asLearnt =
+        eyes.seconds * raysOfGeneration_ / std::max(1.0, static_cast<double>(eyes.rays));  // if it was loaded
+    const double next = std::max(secondsOfGeneration_, loaded_ ? asLearnt : 0.0) * kGenerationGrowth;
+    return !budget || clock.elapsed() + (1.0 + kGenerationShare) * next <= *budget;
+}
+
+LearntLight IndirectLight::nextGeneration() {
+    LearntLight light = known_ ? *std::exchange(known_, std::nullopt) : LearntLight{};
+    if (light.cache) return light;
+    light.seed = view_.request.seed;
+    light.generation = generation_;
+    light.size = view_.plan.generation(generation_);
+    return light;
+}
+
+void IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& progress) {
+    if (frozen_) return useFrozen();
+    const std::uint64_t raysBefore = rays();
+    const WallClock::time_point began = WallClock::now();
+    LearntLight light = nextGeneration();
+    const bool first = !light_.cache;
+    LearntLight before = std::exchange(light_, {});
+    const auto cut = [&clock, &progress, first] {
+        return progress.stopAsked() || clock.past(first ? kCacheShare : kLaterCacheShare);
+    };
+    const std::size_t places = placesOf(light), records = recordsOf(light);
+    const std::uint64_t view = hashOf(view_.survey);
+    const bool complete = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
+    if (!complete) {
+        if (view_.plan.globalMap) makeMap(light, maps);
+        std::unique_ptr<IrradianceCache> cache = makeRecords(light, maps, clock, cut);
+        const bool whole = !cut();
+        if (whole || first) {
+            cacheStage_.records += cache->records().size() - records;
+            light.cache = std::move(cache);
+            if (whole) light.seen.push_back(view);
+            ++light.views;
+        } else {
+            light = std::move(before);  // whole records of the last generation rather than half of this one's
+        }
+    }
+    light.rays += static_cast<double>(rays() - raysBefore);
+    if (first && light.map) reuse_.placesReused = places, reuse_.placesNew = placesOf(light) - places;
+    if (first) reuse_.recordsReused = records, reuse_.recordsNew = recordsOf(light) - records;
+    light_ = std::move(light);
+    raysOfGeneration_ = light_.rays;
+    raysSince_ = 0.0;
+    secondsOfGeneration_ = secondsSince(began);
+    generation_ = light_.generation + 1;
+    if (first && loaded_) save();
+}
+
+void IndirectLight::makeMap(LearntLight& light, const Maps& maps) {
+    const StageTimer timer(globalStage_);
+    const GlobalPass pass = learnMap(view_.context(maps), view_.survey, light, view_.workers);
+    globalStage_.rays += pass.rays;
+    globalStage_.photonsEmitted += pass.emitted;
+    if (pass.emitted > 0) addEnergy(globalStage_, pass.energy);
+    globalStage_.photonsStored += pass.photons.size();
+}
+
+std::unique_ptr<IrradianceCache> IndirectLight::makeRecords(const LearntLight& light, const Maps& maps,
+                                                            RenderClock& clock, const std::function<bool()>& cut) {
+    const StageTimer timer(cacheStage_, clock, view_.pixels.scale());
+    // Gather rays leave to the caustic map what it will hold, also before its first pass.
+    const CausticMap none{PhotonList{}};
+    Maps ofGather = maps;
+    ofGather.global = light.map.get();
+    if (view_.plan.causticMap) ofGather.caustic = &none;
+    CacheBuild build = buildCache(view_.context(ofGather), view_.survey, view_.camera.width(), view_.plan, light.size,
+                                  light.gatherSeed(), view_.workers, cut,
+                                  light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr);
+    cacheStage_.rays += view_.pixels.ofWholeImage(build.rays);
+    return std::move(build.cache);
+}
+
+void IndirectLight::useFrozen() {
+    light_ = *frozen_;
+    reuse_ = {true, recordsOf(light_), 0, placesOf(light_), 0};
+    raysOfGeneration_ = light_.rays;
+    generation_ = light_.generation + 1;
+}
+
+void IndirectLight::giveTo(Maps& maps) const noexcept {
+    maps.global = light_.map.get();
+    maps.cache = light_.cache.get();
+}
+
+std::vector<IrradianceRecord> IndirectLight::records() const {
+    return light_.cache ? light_.cache->records() : std::vector<IrradianceRecord>();
+}
+
+void IndirectLight::saveTo(CheckpointState& state) const noexcept {
+    state.generation = generation_;
+    state.raysOfGeneration = raysOfGeneration_;
+    state.raysSince = raysSince_;
+}
+
+void IndirectLight::restoreFrom(const CheckpointState& state, const Maps& maps, RenderClock& clock,
+                                const Progress& progress) {
+    if (view_.plan.cache && state.generation > 0) {
+        generation_ = state.generation - 1;
+        renew(maps, clock, progress);
+    }
+    raysOfGeneration_ = state.raysOfGeneration;
+    raysSince_ = state.raysSince;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,87 @@
+/// The indirect side of a render: generations of global photons and cache records, each better than the last. A generation
+/// serves many iterations; it can come from a file or from other views, and be handed on to them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <pellucid/base/progress.h>
+#include <pellucid/render/film.h>
+
+#include "cache_file.h"
+#include "checkpoint.h"
+#include "learnt_light.h"
+#include "prepared_view.h"
+#include "stages.h"
+
+namespace pellucid {
+
+class IndirectLight {
+public:
+    explicit IndirectLight(const PreparedView& view) : view_(view) {}
+
+    /// Reads the request's cache file: what is there is where the first generation begins.
+    void load();
+    /// Writes it, unless that was done as soon as the first generation had added to it.
+    void saveAtEnd() const {
+        if (!loaded_) save();
+    }
+    /// The next generation adds to `known`, or where nothing is known has this number.
+    void startFrom(std::optional<LearntLight> known, std::uint32_t generation);
+    /// All iterations read `light` as it is.
+    void freeze(const LearntLight& light) { frozen_ = light; }
+
+    /// Whether a new generation should be made before this iteration. `eyes`: what eye passes have cost.
+    [[nodiscard]] bool due(std::uint32_t iteration, const Film& film, const StageRecord& eyes,
+                           const RenderClock& clock) const;
+    /// Makes it: fresh global photons and fresh records, with an error bound that tightens; or what is known, and more of it.
+    /// `maps`: those of the caustic side. A budget of time cuts it short, and so does `progress`.
+    void renew(const Maps& maps, RenderClock& clock, const Progress& progress);
+    /// Eye rays that the running generation has served.
+    void served(std::uint64_t rays) noexcept { raysSince_ += static_cast<double>(rays); }
+
+    /// What of Maps is the indirect side's.
+    void giveTo(Maps& maps) const noexcept;
+    [[nodiscard]] const LearntLight& light() const noexcept { return light_; }
+    [[nodiscard]] LearntLight takeLight() noexcept { return std::move(light_); }
+    /// Of the running generation.
+    [[nodiscard]] std::vector<IrradianceRecord> records() const;
+    [[nodiscard]] const ReuseReport& reuse() const noexcept { return reuse_; }
+    [[nodiscard]] const StageRecord& globalStage() const noexcept { return globalStage_; }
+    [[nodiscard]] const StageRecord& cacheStage() const noexcept { return cacheStage_; }
+    [[nodiscard]] double seconds() const noexcept { return globalStage_.seconds + cacheStage_.seconds; }
+    [[nodiscard]] std::uint64_t rays() const noexcept { return globalStage_.rays + cacheStage_.rays; }
+
+    void saveTo(CheckpointState& state) const noexcept;
+    /// Makes the running generation again: keyed by seed and number, it is the same.
+    void restoreFrom(const CheckpointState& state, const Maps& maps, RenderClock& clock, const Progress& progress);
+
+private:
+    void save() const;
+    void useFrozen();
+    [[nodiscard]] LearntLight nextGeneration();
+    void makeMap(LearntLight& light, const Maps& maps);
+    [[nodiscard]] std::unique_ptr<IrradianceCache> makeRecords(const LearntLight& light, const Maps& maps,
+                                                               RenderClock& clock, const std::function<bool()>& cut);
+
+    const PreparedView& view_;
+    LearntLight light_;                  ///< of the running generation
+    std::optional<LearntLight> known_;   ///< to start from
+    std::optional<LearntLight> frozen_;  ///< for the whole render
+    bool loaded_ = false;
+    double raysLoaded_ = 0.0;
+    ReuseReport reuse_;
+    std::uint32_t generation_ = 0;  ///< the next one's number
+    double raysOfGeneration_ = 0.0, raysSince_ = 0.0, secondsOfGeneration_ = 0.0;
+    StageRecord globalStage_{"global photons"}, cacheStage_{"irradiance cache"};
+};
+
+/// What a cache file of this view has to match.
+[[nodiscard]] CacheKey fileKey(const PreparedView& view);
+
+}  // namespace pellucid

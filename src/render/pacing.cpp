@@ -1,0 +1,56 @@
+#include "pacing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellucid {
+
+namespace {
+
+constexpr double kDefaultError = 0.05;
+/// Kept of a budget for the files, about.
+constexpr double kSecondsToWritePixel = 6e-7;
+
+[[nodiscard]] bool onlyError(const Budget& b) noexcept { return !b.samples && !b.seconds && !b.rays; }
+
+}  // namespace
+
+double Pace::fractionDone() const {
+    double fraction = 0.0;
+    if (budget.samples)
+        fraction =
+            std::max(fraction, static_cast<double>(samplesPerPixel) / std::max<std::uint32_t>(1, *budget.samples));
+    if (budget.seconds) fraction = std::max(fraction, seconds / std::max(1e-3, *budget.seconds));
+    if (budget.rays)
+        fraction = std::max(fraction,
+                            static_cast<double>(rays) / static_cast<double>(std::max<std::uint64_t>(1, *budget.rays)));
+    if (onlyError(budget)) {
+        const double target = budget.error.value_or(kDefaultError), now = film.relativeError();
+        fraction = std::max(now > 0.0 ? std::pow(target / now, 2.0) : 1.0, seconds / timeCap);
+    }
+    return std::min(1.0, fraction);
+}
+
+bool Pace::finished() const {
+    if (budget.samples && samplesPerPixel >= *budget.samples) return true;
+    if (iterations == 0) return false;
+    const double writing = kSecondsToWritePixel * static_cast<double>(film.pixels());
+    if (budget.seconds && seconds + 0.5 * secondsOfIteration + writing >= *budget.seconds) return true;
+    if (budget.rays && rays + (rays - raysOnce) / (2 * iterations) >= *budget.rays) return true;
+    const bool errorGiven = budget.error || onlyError(budget);
+    if (errorGiven && film.samples() >= 4 && film.relativeError() <= budget.error.value_or(kDefaultError)) return true;
+    return timeCap > 0.0 && seconds >= timeCap;
+}
+
+ProgressReport Pace::report(std::string_view stage) const {
+    ProgressReport r;
+    r.stage = stage;
+    r.fraction = fractionDone();
+    r.secondsElapsed = seconds;
+    if (r.fraction > 0.0) r.secondsLeft = r.secondsElapsed * (1.0 / r.fraction - 1.0);
+    r.samplesPerSecond =
+        static_cast<double>(samplesPerPixel) * static_cast<double>(film.pixels()) / std::max(1e-6, r.secondsElapsed);
+    return r;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,180 @@
+#include "renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <pellucid/base/error.h>
+
+#include "checkpoint.h"
+#include "point_cloud.h"
+#include "records_layer.h"
+
+namespace pellucid {
+
+namespace {
+
+[[nodiscard]] bool asksFor(const RenderRequest& request, std::string_view layer) {
+    return std::find(request.layers.begin(), request.layers.end(), layer) != request.layers.end();
+}
+
+}  // namespace
+
+Renderer::Renderer(const Scene& scene, const RenderRequest& request, const Workers& workers, const Progress& progress)
+    : progress_(progress),
+      clock_(request.budget),
+      view_(prepareView(scene, request, workers)),
+      film_(view_.camera.width(), view_.camera.height()),
+      source_(view_, std::exchange(view_.plan.training, {})),
+      caustics_(view_),
+      indirect_(view_),
+      lights_(view_),
+      eyes_(view_) {
+    if (asksFor(request, "classes")) film_.keepStrings(scene.lobeKinds());
+    if (!request.cacheFile.empty()) indirect_.load();
+}
+
+RenderResult Renderer::run() {
+    const RenderRequest& request = view_.request;
+    if (!request.checkpoint.empty() && request.resume) resume();
+    bool interrupted = false;
+    while (!interrupted && !pace().finished()) {
+        iterate();
+        tell("rendering");
+        interrupted = progress_.stopAsked();
+        if (!request.checkpoint.empty()) saveWhenDue(interrupted);
+    }
+    if (!request.checkpoint.empty()) save();
+    indirect_.saveAtEnd();
+    if (!request.pointsFolder.empty())
+        writePointClouds(request.pointsFolder, indirect_.records(), caustics_.photons(), view_.scene.normalisation());
+    return result(interrupted);
+}
+
+RenderRecord Renderer::plan() {
+    iterate();
+    return record();
+}
+
+void Renderer::iterate() {
+    const double once = indirect_.seconds(), began = clock_.elapsed();
+    makeMaps();
+    tracePixels();
+    secondsOfIteration_ = clock_.elapsed() - began - (indirect_.seconds() - once);
+    ++iteration_;
+}
+
+/// What the eye paths of this iteration read.
+void Renderer::makeMaps() {
+    if (indirect_.due(iteration_, film_, eyes_.stage(), clock_))
+        indirect_.renew(caustics_.maps(source_), clock_, progress_);
+    if (view_.plan.causticMap) caustics_.pass(source_, film_, iteration_);
+}
+
+void Renderer::tracePixels() {
+    std::vector<LightSplat> splats;
+    if (view_.plan.lightPass) splats = lights_.pass(source_, iteration_);
+    if (view_.bidirectional()) return eyes_.bidirectionalPass(std::move(splats), film_);
+    if (view_.plan.lightPass) film_.addSplats(splats, iteration_);
+    if (view_.request.method == Method::Light) return film_.countSamples(1);
+    renewShares();
+    indirect_.served(eyes_.pass(eyeContext(), caustics_, film_, clock_));
+}
+
+void Renderer::renewShares() {
+    if (const auto factor = eyes_.renewShares(film_, caustics_, iteration_))
+        source_.setPaths(caustics_.pathsFor(*factor, iteration_ + 1));
+}
+
+TransportContext Renderer::eyeContext() const noexcept {
+    Maps maps = caustics_.maps(source_);
+    indirect_.giveTo(maps);
+    return view_.context(maps);
+}
+
+Pace Renderer::pace() const {
+    Pace pace{view_.request.budget, film_};
+    pace.timeCap = view_.plan.timeCap;
+    pace.iterations = iteration_;
+    pace.samplesPerPixel = samplesPerPixel();
+    pace.raysOnce = view_.pilot.rays + indirect_.rays();
+    pace.rays = pace.raysOnce + caustics_.stage().rays + lights_.stage().rays + eyes_.stage().rays;
+    pace.seconds = clock_.elapsed();
+    pace.secondsOfIteration = secondsOfIteration_;
+    return pace;
+}
+
+std::uint32_t Renderer::samplesPerPixel() const {
+    if (!view_.plan.adaptive) return film_.samples();
+    return static_cast<std::uint32_t>(static_cast<double>(film_.taken()) * view_.pixels.scale() /
+                                      static_cast<double>(film_.pixels()));
+}
+
+void Renderer::tell(std::string_view stage) const {
+    if (progress_.report) progress_.report(pace().report(stage));
+}
+
+RenderResult Renderer::result(bool interrupted) const {
+    RenderResult result;
+    result.image = film_.image(view_.request.layers);
+    if (indirect_.light().cache && (asksFor(view_.request, "records") || asksFor(view_.request, "all")))
+        addRecordsLayer(result.image, indirect_.light().cache->records(), view_.camera);
+    result.interrupted = interrupted;
+    result.record = record();
+    return result;
+}
+
+RenderRecord Renderer::record() const {
+    RenderRecord r;
+    r.decisions = view_.plan.decisions;
+    r.causticLinks = view_.plan.causticLinks;
+    r.blindSpots = view_.plan.blindSpots;
+    for (const StageRecord* s : {&view_.pilot, &indirect_.globalStage(), &indirect_.cacheStage(), &caustics_.stage(),
+                                 &lights_.stage(), &eyes_.stage()})
+        r.stages.push_back(withMeanEnergy(*s, view_.scene.normalisation().scale()));
+    r.iterations = iteration_;
+    r.samplesPerPixel = samplesPerPixel();
+    r.seconds = clock_.elapsed();
+    r.errorEstimate = film_.relativeError();
+    r.noiseEstimate = std::sqrt(film_.relativeNoise2());
+    r.blurEstimate = std::sqrt(film_.relativeBlur2());
+    r.nonfinite = film_.nonfinite();
+    r.resolved = resolvedSettings(view_.request.settings, view_.plan);
+    r.resolved.causticPhotons = static_cast<int>(source_.paths());
+    r.resolved.guiding = source_.guided() ? "on" : "off";
+    r.threads = view_.workers.threads();
+    r.reuse = indirect_.reuse();
+    r.texels = lights_.texels();
+    return r;
+}
+
+void Renderer::save() const {
+    CheckpointState state;
+    state.iteration = iteration_;
+    state.film = film_.save();
+    source_.saveTo(state);
+    caustics_.saveTo(state);
+    indirect_.saveTo(state);
+    writeCheckpoint(view_.request.checkpoint, checkpointKey(view_.scene, view_.request, view_.camera), state);
+}
+
+void Renderer::saveWhenDue(bool now) {
+    constexpr double kSecondsBetween = 10.0;
+    if (!now && clock_.elapsed() - lastSave_ < kSecondsBetween) return;
+    save();
+    lastSave_ = clock_.elapsed();
+}
+
+/// The continued image has the bits of an uninterrupted one.
+void Renderer::resume() {
+    const auto state =
+        readCheckpoint(view_.request.checkpoint, checkpointKey(view_.scene, view_.request, view_.camera));
+    if (!state) return;
+    if (!film_.restore(state->film) || !source_.restoreFrom(*state) || !caustics_.restoreFrom(*state))
+        throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", view_.request.checkpoint.string(),
+                    "delete it or render without --resume");
+    indirect_.restoreFrom(*state, caustics_.maps(source_), clock_, progress_);
+    iteration_ = state->iteration;
+}
+
+}  // namespace pellucid
