@@ -299,7 +299,7 @@ TEST_F(Cli, InterruptedRenderIsWritten) {
     if (scene.empty()) GTEST_SKIP() << "the shared scenes are not here";
     const Outcome result = run("render '" + scene + "' --size 32x32 --time 60 -o '" + path("o.exr") + "' --record '" +
                                    path("record.json") + "'",
-                               "timeout --preserve-status -s INT 3");
+                               "timeout --preserve-status -s INT 5");
     EXPECT_EQ(result.status, 130) << result.err;
     EXPECT_TRUE(fs::exists(path("o.exr")));
     EXPECT_EQ(nlohmann::json::parse(read(path("record.json"))).at("interrupted"), true);
