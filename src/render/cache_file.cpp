@@ -12,19 +12,22 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCacheFile{"pellucid cache 1\n", "the cache file", "delete it, or name another: it is made anew"};
+constexpr SealedKind kCacheFile{"pellucid cache 2\n", "the cache file", "delete it, or name another: it is made anew"};
 
 /// What a view may have for itself.
 constexpr std::array<std::string_view, 12> kOfTheView{
     "photon.caustic",  "photon.radius",   "photon.alpha", "photon.guiding", "path.adaptive", "path.sampler",
     "reference.texel", "camera.aperture", "camera.focus", "cache.mode",     "photon.chance", "photon.caustic_map"};
 
-static_assert(std::is_trivially_copyable_v<IrradianceRecord> && sizeof(IrradianceRecord) == 32 * sizeof(float));
+/// The last two members are whole numbers.
+constexpr std::size_t kFloatsOfRecord = 35;
+static_assert(std::is_trivially_copyable_v<IrradianceRecord> &&
+              sizeof(IrradianceRecord) == kFloatsOfRecord * sizeof(float) + 2 * sizeof(std::uint32_t));
 
 /// A record that can be looked up without harm.
 [[nodiscard]] bool isSound(const IrradianceRecord& record, float reach, const Bounds& scene) noexcept {
-    std::array<float, sizeof(IrradianceRecord) / sizeof(float)> numbers{};
-    std::memcpy(numbers.data(), &record, sizeof record);
+    std::array<float, kFloatsOfRecord> numbers{};
+    std::memcpy(numbers.data(), &record, sizeof numbers);
     if (!std::all_of(numbers.begin(), numbers.end(), [](float f) { return std::isfinite(f); })) return false;
     // In the tree a record takes cells by its reach: far outside or with a huge one it would take them all.
     const float size = std::max(1e-6F, scene.radius());
@@ -86,6 +89,7 @@ std::string cacheBody(const CacheKey& key, const LearntLight& light) {
     body.put(light.rays);
     body.putBlock(light.seen);
     body.put(light.cache->error());
+    body.put(static_cast<std::uint32_t>(light.cache->metric()));
     body.putBlock(light.cache->records());
     body.putBlock(light.cache->reaches());
     body.putBlock(light.map ? light.map->save() : std::vector<char>());
@@ -93,7 +97,7 @@ std::string cacheBody(const CacheKey& key, const LearntLight& light) {
 }
 
 LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& file, const CacheKey* key,
-                           const Bounds& scene) {
+                           const Bounds& bounds, const Scene* scene) {
     ByteReader reader(body);
     const CacheKey there = getKey(reader);
     if (!reader.good()) refuseDamaged(file, kCacheFile);
@@ -110,16 +114,18 @@ LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& f
     light.rays = reader.get<double>();
     light.seen = reader.getBlock<std::vector<std::uint64_t>>();
     const auto error = reader.get<float>();
+    const auto metric = reader.get<std::uint32_t>();
     const auto records = reader.getBlock<std::vector<IrradianceRecord>>();
     const auto reaches = reader.getBlock<std::vector<float>>();
     const auto map = reader.getBlock<std::vector<char>>();
     const bool sizes = light.size.gatherRays > 0 && light.size.cacheError > 0.0F && error >= light.size.cacheError &&
-                       error < 100.0F && light.rays >= 0.0;
+                       error < 100.0F && metric <= static_cast<std::uint32_t>(CacheMetric::Hessian) &&
+                       light.rays >= 0.0;
     if (!reader.good() || reader.left() > 0 || !sizes || records.size() != reaches.size())
         refuseDamaged(file, kCacheFile);
-    auto cache = std::make_shared<IrradianceCache>(scene, error);
+    auto cache = std::make_shared<IrradianceCache>(bounds, error, static_cast<CacheMetric>(metric), scene);
     for (std::size_t i = 0; i < records.size(); ++i) {
-        if (!isSound(records[i], reaches[i], scene)) refuseDamaged(file, kCacheFile);
+        if (!isSound(records[i], reaches[i], bounds)) refuseDamaged(file, kCacheFile);
         cache->adopt(records[i], reaches[i]);
     }
     light.cache = std::move(cache);
@@ -134,10 +140,10 @@ void writeCacheFile(const std::filesystem::path& file, const CacheKey& key, cons
     writeSealed(file, kCacheFile, cacheBody(key, light));
 }
 
-std::optional<LearntLight> readCacheFile(const std::filesystem::path& file, const CacheKey& key, const Bounds& scene) {
+std::optional<LearntLight> readCacheFile(const std::filesystem::path& file, const CacheKey& key, const Scene& scene) {
     const auto body = readSealed(file, kCacheFile);
     if (!body) return std::nullopt;
-    return parseCacheBody(*body, file, &key, scene);
+    return parseCacheBody(*body, file, &key, scene.bounds(), &scene);
 }
 
 }  // namespace pellucid

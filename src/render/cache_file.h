@@ -27,11 +27,12 @@ void writeCacheFile(const std::filesystem::path& file, const CacheKey& key, cons
 
 /// Empty when there is no such file; throws Error{BadInput} when it is damaged or was made from something else.
 [[nodiscard]] std::optional<LearntLight> readCacheFile(const std::filesystem::path& file, const CacheKey& key,
-                                                       const Bounds& scene);
+                                                       const Scene& scene);
 
-/// The sealed part of such a file, and back. `key` null: whoever made it. `file` is for errors.
+/// The sealed part of such a file, and back. `key` null: whoever made it. `file` is for errors, `scene` for the records'
+/// shadow rays (null: none).
 [[nodiscard]] LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& file, const CacheKey* key,
-                                         const Bounds& scene);
+                                         const Bounds& bounds, const Scene* scene = nullptr);
 [[nodiscard]] std::string cacheBody(const CacheKey& key, const LearntLight& light);
 
 }  // namespace pellucid

@@ -17,8 +17,9 @@ constexpr const char* kLayerNames[kPathClasses] = {"emission", "direct", "causti
 }  // namespace
 
 const std::vector<std::string>& auxiliaryLayers() noexcept {
-    static const std::vector<std::string> names{"albedo",  "normal",  "depth",   "variance", "radius",
-                                                "photons", "records", "samples", "classes"};
+    static const std::vector<std::string> names{
+        "albedo",  "normal",  "depth",         "variance",        "radius",     "photons",      "records",
+        "samples", "classes", "record_radius", "record_gradient", "record_age", "record_reuse", "record_reason"};
     return names;
 }
 

@@ -5,7 +5,7 @@
 
 #include <pellucid/transport/caustic_map.h>
 
-#include "cache_builder.h"
+#include "cache_layers.h"
 
 namespace pellucid {
 
@@ -36,7 +36,7 @@ CacheKey fileKey(const PreparedView& view) {
 void IndirectLight::load() {
     reuse_.asked = true;
     if (!view_.plan.cache) return;
-    known_ = readCacheFile(view_.request.cacheFile, fileKey(view_), view_.scene.bounds());
+    known_ = readCacheFile(view_.request.cacheFile, fileKey(view_), view_.scene);
     loaded_ = known_.has_value();
     raysLoaded_ = loaded_ ? known_->rays : 0.0;
 }
@@ -92,11 +92,12 @@ void IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& 
     const bool complete = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
     if (!complete) {
         if (view_.plan.globalMap) makeMap(light, maps);
-        std::unique_ptr<IrradianceCache> cache = makeRecords(light, maps, clock, cut);
+        CacheBuild build = makeRecords(light, maps, clock, cut);
         const bool whole = !cut();
         if (whole || first) {
-            cacheStage_.records += cache->records().size() - records;
-            light.cache = std::move(cache);
+            cacheStage_.records += build.cache->records().size() - records;
+            light.cache = std::move(build.cache);
+            plain_ = std::move(build.plain);
             if (whole) light.seen.push_back(view);
             ++light.views;
         } else {
@@ -123,8 +124,8 @@ void IndirectLight::makeMap(LearntLight& light, const Maps& maps) {
     globalStage_.photonsStored += pass.photons.size();
 }
 
-std::unique_ptr<IrradianceCache> IndirectLight::makeRecords(const LearntLight& light, const Maps& maps,
-                                                            RenderClock& clock, const std::function<bool()>& cut) {
+CacheBuild IndirectLight::makeRecords(const LearntLight& light, const Maps& maps, RenderClock& clock,
+                                      const std::function<bool()>& cut) {
     const StageTimer timer(cacheStage_, clock, view_.pixels.scale());
     // Gather rays leave to the caustic map what it will hold, also before its first pass.
     const CausticMap none{PhotonList{}};
@@ -133,9 +134,9 @@ std::unique_ptr<IrradianceCache> IndirectLight::makeRecords(const LearntLight& l
     if (view_.plan.causticMap) ofGather.caustic = &none;
     CacheBuild build = buildCache(view_.context(ofGather), view_.survey, view_.camera.width(), view_.plan, light.size,
                                   light.gatherSeed(), view_.workers, cut,
-                                  light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr);
+                                  light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr, light.views);
     cacheStage_.rays += view_.pixels.ofWholeImage(build.rays);
-    return std::move(build.cache);
+    return build;
 }
 
 void IndirectLight::useFrozen() {
@@ -150,8 +151,19 @@ void IndirectLight::giveTo(Maps& maps) const noexcept {
     maps.cache = light_.cache.get();
 }
 
-std::vector<IrradianceRecord> IndirectLight::records() const {
-    return light_.cache ? light_.cache->records() : std::vector<IrradianceRecord>();
+StoredPoints IndirectLight::stored() const {
+    StoredPoints points;
+    if (light_.cache) points.records = light_.cache->records();
+    if (light_.map) points.places = light_.map->places();
+    return points;
+}
+
+void IndirectLight::addLayers(Image& image) const {
+    if (!light_.cache) return;
+    addCacheLayers(
+        image, view_.request.layers,
+        {*light_.cache, view_.survey, plain_, view_.camera, light_.views, 1.0 / view_.scene.normalisation().scale()},
+        view_.workers);
 }
 
 void IndirectLight::saveTo(CheckpointState& state) const noexcept {

@@ -13,9 +13,11 @@
 #include <pellucid/base/progress.h>
 #include <pellucid/render/film.h>
 
+#include "cache_builder.h"
 #include "cache_file.h"
 #include "checkpoint.h"
 #include "learnt_light.h"
+#include "point_cloud.h"
 #include "prepared_view.h"
 #include "stages.h"
 
@@ -49,8 +51,10 @@ public:
     void giveTo(Maps& maps) const noexcept;
     [[nodiscard]] const LearntLight& light() const noexcept { return light_; }
     [[nodiscard]] LearntLight takeLight() noexcept { return std::move(light_); }
-    /// Of the running generation.
-    [[nodiscard]] std::vector<IrradianceRecord> records() const;
+    /// Of the running generation, for point clouds.
+    [[nodiscard]] StoredPoints stored() const;
+    /// Adds what the request's layers ask of the cache.
+    void addLayers(Image& image) const;
     [[nodiscard]] const ReuseReport& reuse() const noexcept { return reuse_; }
     [[nodiscard]] const StageRecord& globalStage() const noexcept { return globalStage_; }
     [[nodiscard]] const StageRecord& cacheStage() const noexcept { return cacheStage_; }
@@ -66,13 +70,14 @@ private:
     void useFrozen();
     [[nodiscard]] LearntLight nextGeneration();
     void makeMap(LearntLight& light, const Maps& maps);
-    [[nodiscard]] std::unique_ptr<IrradianceCache> makeRecords(const LearntLight& light, const Maps& maps,
-                                                               RenderClock& clock, const std::function<bool()>& cut);
+    [[nodiscard]] CacheBuild makeRecords(const LearntLight& light, const Maps& maps, RenderClock& clock,
+                                         const std::function<bool()>& cut);
 
     const PreparedView& view_;
     LearntLight light_;                  ///< of the running generation
     std::optional<LearntLight> known_;   ///< to start from
     std::optional<LearntLight> frozen_;  ///< for the whole render
+    std::vector<std::uint8_t> plain_;    ///< pixels that the last records made leave to plain gather
     bool loaded_ = false;
     double raysLoaded_ = 0.0;
     ReuseReport reuse_;

@@ -131,6 +131,10 @@ void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, 
     plan.growPhotons = s.globalPhotons < 0;
     plan.growRays = s.gatherRays <= 0;
     plan.globalMap = plan.globalPaths > 0;
+    plan.cacheChoice = isOn(s.cacheChoice);
+    plan.cacheMetric = s.cacheMetric == "ward"        ? CacheMetric::Ward
+                       : s.cacheMetric == "tabellion" ? CacheMetric::Tabellion
+                                                      : CacheMetric::Hessian;
     if (s.cacheError > 0.0) plan.cacheError = static_cast<float>(s.cacheError);
     if (s.gatherRays > 0) plan.gatherRays = s.gatherRays;
     if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);

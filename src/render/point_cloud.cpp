@@ -65,20 +65,31 @@ template <class Item>
     return glm::dvec3(position) / scene.scale() + scene.centre;
 }
 
+/// Of records or of the map's places.
+template <class Item>
+[[nodiscard]] std::string irradiancePly(const std::vector<Item>& items, const char* comment,
+                                        const Normalisation& scene) {
+    PlyWriter ply(items.size(), comment,
+                  {"x", "y", "z", "nx", "ny", "nz", "irradiance_red", "irradiance_green", "irradiance_blue", "radius"});
+    const float white = whiteOf(items, &Item::irradiance);
+    for (const Item& i : items) {
+        ply.put(inMetres(i.position, scene));
+        ply.put(glm::dvec3(i.normal));
+        ply.put(glm::dvec3(i.irradiance));
+        ply.put(static_cast<double>(i.radius) / scene.scale());
+        ply.putColour(i.irradiance, white);
+    }
+    return ply.take();
+}
+
 }  // namespace
 
 std::string recordsPly(const std::vector<IrradianceRecord>& records, const Normalisation& scene) {
-    PlyWriter ply(records.size(), "irradiance cache records; metres, W m^-2",
-                  {"x", "y", "z", "nx", "ny", "nz", "irradiance_red", "irradiance_green", "irradiance_blue", "radius"});
-    const float white = whiteOf(records, &IrradianceRecord::irradiance);
-    for (const IrradianceRecord& r : records) {
-        ply.put(inMetres(r.position, scene));
-        ply.put(glm::dvec3(r.normal));
-        ply.put(glm::dvec3(r.irradiance));
-        ply.put(static_cast<double>(r.radius) / scene.scale());
-        ply.putColour(r.irradiance, white);
-    }
-    return ply.take();
+    return irradiancePly(records, "irradiance cache records; metres, W m^-2", scene);
+}
+
+std::string placesPly(const std::vector<RadianceMap::Place>& places, const Normalisation& scene) {
+    return irradiancePly(places, "places of the global map; metres, W m^-2", scene);
 }
 
 std::string photonsPly(const PhotonList& photons, const Normalisation& scene) {
@@ -97,15 +108,16 @@ std::string photonsPly(const PhotonList& photons, const Normalisation& scene) {
     return ply.take();
 }
 
-void writePointClouds(const std::filesystem::path& folder, const std::vector<IrradianceRecord>& records,
-                      const PhotonList& photons, const Normalisation& scene) {
+void writePointClouds(const std::filesystem::path& folder, const StoredPoints& points, const PhotonList& photons,
+                      const Normalisation& scene) {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
     if (failed)
         throw Error(ErrorKind::CannotFinish, "the folder cannot be made: " + failed.message(), folder.string(),
                     "name one that may be made");
-    writeFile(folder / "records.ply", recordsPly(records, scene));
+    writeFile(folder / "records.ply", recordsPly(points.records, scene));
     writeFile(folder / "caustic-photons.ply", photonsPly(photons, scene));
+    if (!points.places.empty()) writeFile(folder / "global-map.ply", placesPly(points.places, scene));
 }
 
 }  // namespace pellucid

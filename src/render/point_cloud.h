@@ -1,5 +1,5 @@
-/// What a render has stored in space, as PLY point clouds that Blender and MeshLab open: cache records and caustic photons, in
-/// the metres and axes of the scene file (y up).
+/// What a render has stored in space, as PLY point clouds that Blender and MeshLab open: cache records, caustic photons and
+/// the places of the global map, in the metres and axes of the scene file (y up).
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <pellucid/scene/scene.h>
 #include <pellucid/transport/irradiance_cache.h>
 #include <pellucid/transport/photon.h>
+#include <pellucid/transport/radiance_map.h>
 
 namespace pellucid {
 
@@ -20,8 +21,17 @@ namespace pellucid {
 /// irradiance and radius.
 [[nodiscard]] std::string photonsPly(const PhotonList& photons, const Normalisation& scene);
 
-/// `records.ply` and `caustic-photons.ply` in a folder, which is made if need be. Throws Error{CannotFinish}.
-void writePointClouds(const std::filesystem::path& folder, const std::vector<IrradianceRecord>& records,
-                      const PhotonList& photons, const Normalisation& scene);
+/// As recordsPly, of the places at which the global map answers gather rays; the radius is that of their estimate.
+[[nodiscard]] std::string placesPly(const std::vector<RadianceMap::Place>& places, const Normalisation& scene);
+
+/// What the indirect side has stored.
+struct StoredPoints {
+    std::vector<IrradianceRecord> records;
+    std::vector<RadianceMap::Place> places;  ///< of the global map; empty where there is none
+};
+
+/// `records.ply`, `caustic-photons.ply` and, where there is a global map, `global-map.ply` in a folder, which is made if need be. Throws Error{CannotFinish}.
+void writePointClouds(const std::filesystem::path& folder, const StoredPoints& points, const PhotonList& photons,
+                      const Normalisation& scene);
 
 }  // namespace pellucid

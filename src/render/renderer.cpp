@@ -8,7 +8,6 @@
 
 #include "checkpoint.h"
 #include "point_cloud.h"
-#include "records_layer.h"
 
 namespace pellucid {
 
@@ -47,7 +46,7 @@ RenderResult Renderer::run() {
     if (!request.checkpoint.empty()) save();
     indirect_.saveAtEnd();
     if (!request.pointsFolder.empty())
-        writePointClouds(request.pointsFolder, indirect_.records(), caustics_.photons(), view_.scene.normalisation());
+        writePointClouds(request.pointsFolder, indirect_.stored(), caustics_.photons(), view_.scene.normalisation());
     return result(interrupted);
 }
 
@@ -117,8 +116,7 @@ void Renderer::tell(std::string_view stage) const {
 RenderResult Renderer::result(bool interrupted) const {
     RenderResult result;
     result.image = film_.image(view_.request.layers);
-    if (indirect_.light().cache && (asksFor(view_.request, "records") || asksFor(view_.request, "all")))
-        addRecordsLayer(result.image, indirect_.light().cache->records(), view_.camera);
+    indirect_.addLayers(result.image);
     result.interrupted = interrupted;
     result.record = record();
     return result;

@@ -105,6 +105,14 @@ constexpr auto kParameters = std::to_array<Parameter>({
      "width of the texels by which --method reference shows caustics in mirrors and through glass; 0: path tracing"},
     {"cache.mode", &Settings::cache, 0, 0, true, false, "auto|on|off", "",
      "indirect diffuse light by irradiance cache, or traced at every pixel"},
+    {"cache.metric", &Settings::cacheMetric, 0, 0, false, false, "ward|tabellion|hessian", "",
+     "how far a record speaks: by the mean distance of what it sees, by the nearest, or by the second derivatives of "
+     "the "
+     "irradiance",
+     ParameterPass::Cache},
+    {"cache.choice", &Settings::cacheChoice, 0, 0, false, false, "on|off", "",
+     "where records would serve hardly a pixel each (fine leaves, bumpy normals) light is gathered pixel by pixel",
+     ParameterPass::Cache},
     {"cache.error",
      &Settings::cacheError,
      0.001,

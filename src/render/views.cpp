@@ -40,7 +40,7 @@ public:
         std::optional<LearntLight> light;
         if (!file.empty() && !cameras_.empty()) {
             frame_.camera = cameras_.front();
-            light = readCacheFile(file, fileKey(prepareView(scene_, frame_, workers_)), scene_.bounds());
+            light = readCacheFile(file, fileKey(prepareView(scene_, frame_, workers_)), scene_);
         }
         const double before = light ? light->rays : 0.0;
         forViews(kSweeps, [&](std::size_t i) {

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include <pellucid/math/constants.h>
+#include <pellucid/math/frame.h>
+#include <pellucid/scene/scene.h>
+
 namespace pellucid {
 
 namespace {
@@ -13,6 +17,19 @@ constexpr float kMinFactor = 0.05F, kMaxFactor = 4.0F;
 constexpr int kMaxDepth = 20;
 /// A record does not speak for points that lie behind it by more than this share of its radius.
 constexpr float kBehind = 0.02F;
+/// 1 - n.n_i that Tabellion's error of the normals compares with: of 10 degrees, at the default error.
+constexpr float kTabellionNormals = 0.0151922F, kTabellionError = 0.25F;
+/// A shadow ray between a record and a point runs this share of their distance above both: over the surface's own bumps,
+/// under what stands in the way.
+constexpr float kLift = 0.1F;
+constexpr float kSilent = std::numeric_limits<float>::infinity();
+
+/// The azimuth's sector around the record's normal.
+[[nodiscard]] unsigned sectorOf(const Frame& frame, const glm::vec3& offset) noexcept {
+    const float turn = std::atan2(glm::dot(offset, frame.bitangent), glm::dot(offset, frame.tangent)) / kTwoPi;
+    return static_cast<unsigned>(static_cast<int>(std::floor(turn * static_cast<float>(kBlockedSectors)))) %
+           kBlockedSectors;
+}
 
 [[nodiscard]] Rgb extrapolate(const IrradianceRecord& r, const glm::vec3& offset, const glm::vec3& normal) noexcept {
     const glm::vec3 turn = glm::cross(r.normal, normal);
@@ -26,10 +43,11 @@ constexpr float kBehind = 0.02F;
 
 }  // namespace
 
-IrradianceCache::IrradianceCache(const Bounds& scene, float error) : error_(error) {
-    const glm::vec3 diagonal = scene.diagonal();
+IrradianceCache::IrradianceCache(const Bounds& bounds, float error, CacheMetric metric, const Scene* scene)
+    : error_(error), metric_(metric), scene_(scene) {
+    const glm::vec3 diagonal = bounds.diagonal();
     size_ = 1.01F * std::max(diagonal.x, std::max(diagonal.y, diagonal.z));
-    lower_ = scene.centre() - glm::vec3(0.5F * size_);
+    lower_ = bounds.centre() - glm::vec3(0.5F * size_);
     nodes_.emplace_back();
 }
 
@@ -97,6 +115,13 @@ void IrradianceCache::adopt(const IrradianceRecord& record, float reach) {
 }
 
 void IrradianceCache::insert(IrradianceRecord record) {
+    if (metric_ != CacheMetric::Hessian) clampWithNeighbours(record);
+    adopt(record, record.radius * error_);
+}
+
+/// Each radius by the others' plus their distance: a record finds out from its neighbours what its own rays have missed.
+/// [Krivanek2006] The Hessian sees the same from the edges around; with it clamping costs more records than it is worth.
+void IrradianceCache::clampWithNeighbours(IrradianceRecord& record) {
     forNear(record.position, [&](std::uint32_t i) {
         const IrradianceRecord& other = records_[i];
         if (glm::dot(other.normal, record.normal) < 0.5F) return;
@@ -107,41 +132,79 @@ void IrradianceCache::insert(IrradianceRecord record) {
         if (glm::dot(other.normal, record.normal) < 0.5F) return;
         other.radius = std::min(other.radius, record.radius + glm::length(other.position - record.position));
     });
-    adopt(record, record.radius * error_);
 }
 
-/// Ward's error of `record` at a point; infinite where it may not speak. [Ward1988]
-static float wardError(const IrradianceRecord& r, const glm::vec3& offset, const glm::vec3& normal,
-                       float limit) noexcept {
-    constexpr float kSilent = std::numeric_limits<float>::infinity();
-    const float distance2 = glm::dot(offset, offset);
+/// Ward's sum of distance over radius and sqrt(1 - n.n_i) [Ward1988]; the larger of the two against 10 degrees
+/// [TabellionLamorlette2004]; their root of squares over an ellipse for Hessian records.
+IrradianceCache::Judged IrradianceCache::judge(const IrradianceRecord& r, const glm::vec3& offset,
+                                               const glm::vec3& normal, float limit) const noexcept {
+    const float along = glm::dot(offset, r.squeeze);
+    const float distance2 = glm::dot(offset, offset) + along * along;
     const float reach = limit * r.radius;
-    if (distance2 >= reach * reach) return kSilent;
-    if (glm::dot(offset, normal + r.normal) < -2.0F * kBehind * r.radius) return kSilent;
-    const float error = std::sqrt(distance2) / r.radius + std::sqrt(std::max(0.0F, 1.0F - glm::dot(normal, r.normal)));
-    return error < limit ? error : kSilent;
+    if (!(distance2 < reach * reach)) return {kSilent, Silence::Distance};
+    if (glm::dot(offset, normal + r.normal) < -2.0F * kBehind * r.radius) return {kSilent, Silence::Behind};
+    const float distance = std::sqrt(distance2) / r.radius, turn2 = std::max(0.0F, 1.0F - glm::dot(normal, r.normal));
+    float error = 0.0F, ofNormals = std::sqrt(turn2);
+    switch (metric_) {
+        case CacheMetric::Ward:
+            error = distance + ofNormals;
+            break;
+        case CacheMetric::Tabellion:
+            ofNormals *= kTabellionError / std::sqrt(kTabellionNormals);
+            error = std::max(distance, ofNormals);
+            break;
+        case CacheMetric::Hessian:
+            error = std::sqrt(distance * distance + turn2);
+            break;
+    }
+    if (error < limit) return {error, Silence::None};
+    return {kSilent, ofNormals >= limit ? Silence::Normal : Silence::Error};
+}
+
+/// Falls to zero where the record stops to speak: no seam at its border.
+float IrradianceCache::weightOf(float error) const noexcept {
+    if (metric_ == CacheMetric::Ward) return 1.0F / std::max(error, 1e-4F) - 1.0F / error_;
+    return 1.0F - error / error_;
+}
+
+/// Whether something stands between a record and a point of the same surface: looked for only in the azimuths where the
+/// record's own rays met something near.
+bool IrradianceCache::isBlocked(const IrradianceRecord& r, const glm::vec3& position, const glm::vec3& normal,
+                                std::uint64_t* rays) const noexcept {
+    if (r.blocked == 0 || scene_ == nullptr) return false;
+    const glm::vec3 offset = position - r.position;
+    if ((r.blocked >> sectorOf(Frame(r.normal), offset) & 1U) == 0) return false;
+    const float lift = kLift * glm::length(offset);
+    const glm::vec3 from = offsetOrigin(position + normal * lift, normal),
+                    to = offsetOrigin(r.position + r.normal * lift, r.normal) - from;
+    const float length = glm::length(to);
+    if (!(length > 0.0F)) return false;
+    if (rays != nullptr) ++*rays;
+    return scene_->visibility(Ray{from, to / length, length}) <= 0.0F;
 }
 
 bool IrradianceCache::covers(const glm::vec3& position, const glm::vec3& normal, float limit, std::size_t old,
                              float largestOld) const noexcept {
     bool covered = false;
     forNear(position, [&](std::uint32_t i) {
-        if (i < old && records_[i].radius > largestOld) return;
-        covered = covered || wardError(records_[i], position - records_[i].position, normal, limit) < limit;
+        const IrradianceRecord& r = records_[i];
+        if (covered || (i < old && r.radius > largestOld)) return;
+        covered =
+            judge(r, position - r.position, normal, limit).error < limit && !isBlocked(r, position, normal, nullptr);
     });
     return covered;
 }
 
-std::optional<Irradiance> IrradianceCache::lookup(const glm::vec3& position, const glm::vec3& normal) const noexcept {
+std::optional<Irradiance> IrradianceCache::lookup(const glm::vec3& position, const glm::vec3& normal,
+                                                  std::uint64_t* rays) const noexcept {
     Irradiance sum;
     float weights = 0.0F;
     forNear(position, [&](std::uint32_t i) {
         const IrradianceRecord& r = records_[i];
         const glm::vec3 offset = position - r.position;
-        const float error = wardError(r, offset, normal, error_);
-        if (error >= error_) return;
-        // Falls to zero where the record stops to speak: no seam at its border.
-        const float weight = 1.0F / std::max(error, 1e-4F) - 1.0F / error_;
+        const float error = judge(r, offset, normal, error_).error;
+        if (error >= error_ || isBlocked(r, position, normal, rays)) return;
+        const float weight = weightOf(error);
         const Rgb e = extrapolate(r, offset, normal);
         sum.plain += weight * e;
         sum.grazing += weight * e * r.grazingShare;
@@ -152,6 +215,21 @@ std::optional<Irradiance> IrradianceCache::lookup(const glm::vec3& position, con
     sum.plain /= weights;
     sum.grazing /= weights;
     return sum;
+}
+
+std::vector<IrradianceCache::Speaker> IrradianceCache::speakers(const glm::vec3& position, const glm::vec3& normal,
+                                                                Silence& objection) const {
+    std::vector<Speaker> list;
+    objection = Silence::Nobody;
+    forNear(position, [&](std::uint32_t i) {
+        const IrradianceRecord& r = records_[i];
+        Judged judged = judge(r, position - r.position, normal, error_);
+        if (judged.silence == Silence::None && isBlocked(r, position, normal, nullptr))
+            judged.silence = Silence::Blocked;
+        objection = std::min(objection, judged.silence);
+        if (judged.silence == Silence::None) list.push_back({i, weightOf(judged.error)});
+    });
+    return list;
 }
 
 }  // namespace pellucid

@@ -364,6 +364,13 @@ std::unique_ptr<RadianceMap> RadianceMap::restore(const std::vector<char>& bytes
     return map;
 }
 
+std::vector<RadianceMap::Place> RadianceMap::places() const {
+    std::vector<Place> list;
+    list.reserve(impl_->points.size());
+    for (const RadiancePoint& p : impl_->points) list.push_back({p.position, p.normal, p.irradiance, p.radius});
+    return list;
+}
+
 std::size_t RadianceMap::points() const noexcept { return impl_->points.size(); }
 std::uint64_t RadianceMap::rays() const noexcept { return impl_->rays; }
 

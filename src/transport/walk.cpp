@@ -85,7 +85,7 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         state.radiance.blur += luminance(state.throughput * outgoing) * blur;
     }
     if (maps.cache != nullptr) {
-        if (const auto cached = maps.cache->lookup(position, normal)) {
+        if (const auto cached = maps.cache->lookup(position, normal, &rays_)) {
             state.radiance.add(state.ledger.pathAfter(kDiffuse).open(),
                                state.throughput * outgoing * cached->through(lobe));
             state.chainsNext = maps.causticChains;

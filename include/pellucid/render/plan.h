@@ -7,6 +7,7 @@
 
 #include <pellucid/render/render.h>
 #include <pellucid/scene/scene.h>
+#include <pellucid/transport/cache_metric.h>
 #include <pellucid/transport/emission_guide.h>
 #include <pellucid/transport/visible_cells.h>
 #include <pellucid/transport/walk.h>
@@ -37,6 +38,8 @@ struct Plan {
     float causticFootprints = 2.5F;  ///< kernel radius of the first iteration where it is not
     float alpha = 2.0F / 3.0F;
     float cacheError = 0.25F;
+    CacheMetric cacheMetric = CacheMetric::Hessian;
+    bool cacheChoice = true;             ///< where records do not pay, points gather for themselves
     int gatherRays = 128;                ///< a record, in the first generation
     std::uint32_t mostCausticPaths = 0;  ///< of any iteration, for photon.memory; 0: no limit
     std::uint32_t mostGlobalPaths = 0;   ///< of any generation, for photon.memory; 0: no limit

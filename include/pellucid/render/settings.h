@@ -39,11 +39,13 @@ struct Settings {
     // reference
     double texelWidth = 1.0;  ///< reference.texel: in pixel footprints; 0: off
     // irradiance cache and gather
-    std::string cache = "auto";  ///< cache.mode: auto | on | off
-    double cacheError = -1.0;    ///< cache.error: Ward's a
-    int gatherRays = -1;         ///< cache.rays: gather rays a record
-    double minSpacing = -1.0;    ///< cache.min_spacing: in pixel footprints
-    double maxSpacing = -1.0;    ///< cache.max_spacing
+    std::string cache = "auto";           ///< cache.mode: auto | on | off
+    std::string cacheMetric = "hessian";  ///< cache.metric: ward | tabellion | hessian
+    std::string cacheChoice = "on";       ///< cache.choice: on | off
+    double cacheError = -1.0;             ///< cache.error: Ward's a
+    int gatherRays = -1;                  ///< cache.rays: gather rays a record
+    double minSpacing = -1.0;             ///< cache.min_spacing: in pixel footprints
+    double maxSpacing = -1.0;             ///< cache.max_spacing
     // camera
     double aperture = 0.0;  ///< camera.aperture: lens diameter in metres
     double focus = 1.0;     ///< camera.focus: in metres

@@ -1,9 +1,11 @@
 /// The hemisphere gather that makes one irradiance record: M x N stratified cosine-distributed rays give the irradiance, its
-/// two gradients [WardHeckbert1992, signs and sums as in docs/theory.md] and the harmonic mean distance.
+/// two gradients [WardHeckbert1992, signs and sums as in docs/theory.md], how far the record may speak, by the metric of
+/// `cache.metric`, and where something stands in its way.
 #pragma once
 
 #include <cstdint>
 
+#include <pellucid/transport/cache_metric.h>
 #include <pellucid/transport/irradiance_cache.h>
 #include <pellucid/transport/walk.h>
 
@@ -13,6 +15,9 @@ struct GatherOptions {
     int rays = 400;                            ///< about; rounded to M x N with N about pi M
     float minRadius = 0.0F, maxRadius = 1.0F;  ///< bounds of R, scene units
     std::uint64_t seed = 0;
+    CacheMetric metric = CacheMetric::Ward;
+    float sceneRadius = 1.0F;  ///< the unit of the Hessian's radii
+    float reach = 1.0F;        ///< of the radius: how far look-ups may lie
 };
 
 /// `point` must be valid. `key` identifies the record among all of the render. Returns a record with bounded radius.

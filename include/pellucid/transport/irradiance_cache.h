@@ -1,11 +1,13 @@
 /// The irradiance cache: indirect irradiance at sparse records, interpolated with Ward's weights [Ward1988] and rotational
 /// and translational gradients [WardHeckbert1992], radii clamped between neighbours [Krivanek2006]. Bias enters here: the
-/// interpolation is of first order, and a record speaks for a region. Look-ups are read-only and lock-free; records are
-/// added between rounds in one order.
+/// interpolation is of first order, and a record speaks for a region. How far is the metric's matter (cache_metric.h); what
+/// stands in between is found by a short shadow ray where the record's gather rays met something near. Look-ups are
+/// read-only and lock-free; records are added between rounds in one order.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -15,8 +17,11 @@
 #include <pellucid/math/bounds.h>
 #include <pellucid/math/rgb.h>
 #include <pellucid/surface/bsdf.h>
+#include <pellucid/transport/cache_metric.h>
 
 namespace pellucid {
+
+class Scene;
 
 /// One gather. Gradients hold a column for each colour channel.
 struct IrradianceRecord {
@@ -27,6 +32,22 @@ struct IrradianceRecord {
     std::array<glm::vec3, 3> translation{};  ///< dE/dx, per scene unit
     float harmonicDistance = 0.0F;           ///< R: mean distance of what is seen
     float radius = 0.0F;                     ///< R after bounds and neighbour clamping
+    glm::vec3 squeeze{0.0F};  ///< distances along it count sqrt(1 + |squeeze|^2) times: across it the record is R long
+    std::uint32_t blocked = 0;  ///< by azimuth: something stands within the record's reach
+    std::uint32_t born = 0;     ///< views that had added to the cache before
+};
+/// Sectors of `blocked`, from the tangent of Frame(normal) on.
+inline constexpr unsigned kBlockedSectors = 32;
+
+/// What keeps a record from speaking at a point, from the mildest to the strongest objection.
+enum class Silence : std::uint8_t {
+    None,      ///< it speaks
+    Blocked,   ///< something stands in between
+    Error,     ///< within its reach, but distance and normal are too much together
+    Normal,    ///< the normals differ too much, whatever the distance
+    Behind,    ///< the point lies behind the record
+    Distance,  ///< out of its reach
+    Nobody     ///< there is no record anywhere near
 };
 
 struct Irradiance {
@@ -41,17 +62,28 @@ struct Irradiance {
 
 class IrradianceCache {
 public:
-    /// `error` is Ward's a: a record speaks where |x - x_i| / R_i + sqrt(1 - n.n_i) < a.
-    IrradianceCache(const Bounds& scene, float error);
+    /// A record speaks where its error by `metric` is below `error`; for Ward's: |x - x_i| / R_i + sqrt(1 - n.n_i) < a.
+    /// `scene`: where shadow rays between records and points are traced; null: none are.
+    explicit IrradianceCache(const Bounds& bounds, float error, CacheMetric metric = CacheMetric::Ward,
+                             const Scene* scene = nullptr);
 
-    /// Adds a record, clamps its radius and its neighbours' (each by the other's plus their distance).
+    /// Adds a record; but for Hessian records clamps its radius and its neighbours' (each by the other's plus their distance).
     void insert(IrradianceRecord record);
 
     /// Adds a record as it is, found within `reach`: from records() and reaches(), in order, the same cache comes back.
     void adopt(const IrradianceRecord& record, float reach);
 
-    /// Empty where no record speaks.
-    [[nodiscard]] std::optional<Irradiance> lookup(const glm::vec3& position, const glm::vec3& normal) const noexcept;
+    /// Empty where no record speaks. `rays` counts the shadow rays (null: nobody does).
+    [[nodiscard]] std::optional<Irradiance> lookup(const glm::vec3& position, const glm::vec3& normal,
+                                                   std::uint64_t* rays = nullptr) const noexcept;
+
+    /// For layers: the records that speak there, with their weights, and the mildest objection of one that does not.
+    struct Speaker {
+        std::uint32_t record;
+        float weight;
+    };
+    [[nodiscard]] std::vector<Speaker> speakers(const glm::vec3& position, const glm::vec3& normal,
+                                                Silence& objection) const;
 
     /// Whether some record speaks there with an error below `limit` (at most error()). Of the first `old` records only those
     /// count that have at most this radius: others were made for a view from farther away.
@@ -62,6 +94,7 @@ public:
     /// By record: how far it is looked for. Its radius may have shrunk since.
     [[nodiscard]] const std::vector<float>& reaches() const noexcept { return reaches_; }
     [[nodiscard]] float error() const noexcept { return error_; }
+    [[nodiscard]] CacheMetric metric() const noexcept { return metric_; }
 
 private:
     struct Node {
@@ -70,9 +103,22 @@ private:
     };
     template <class Visit>
     void forNear(const glm::vec3& point, Visit&& visit) const;
+    /// A record's error and weight at a point; the error is infinite where it may not speak.
+    struct Judged {
+        float error;
+        Silence silence;
+    };
+    [[nodiscard]] Judged judge(const IrradianceRecord& r, const glm::vec3& offset, const glm::vec3& normal,
+                               float limit) const noexcept;
+    [[nodiscard]] float weightOf(float error) const noexcept;
+    [[nodiscard]] bool isBlocked(const IrradianceRecord& r, const glm::vec3& position, const glm::vec3& normal,
+                                 std::uint64_t* rays) const noexcept;
+    void clampWithNeighbours(IrradianceRecord& record);
     void place(std::uint32_t node, const glm::vec3& lower, float size, std::uint32_t record, float reach);
 
     float error_;
+    CacheMetric metric_;
+    const Scene* scene_;
     glm::vec3 lower_;
     float size_;
     std::vector<Node> nodes_;

@@ -64,6 +64,14 @@ public:
     [[nodiscard]] static std::unique_ptr<RadianceMap> restore(const std::vector<char>& bytes);
 
     [[nodiscard]] std::size_t points() const noexcept;
+
+    /// A place as it stands, for point clouds.
+    struct Place {
+        glm::vec3 position{0.0F}, normal{0.0F};
+        Rgb irradiance{0.0F};
+        float radius = 0.0F;
+    };
+    [[nodiscard]] std::vector<Place> places() const;
     [[nodiscard]] std::uint64_t rays() const noexcept;
 
 private:
