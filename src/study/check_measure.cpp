@@ -7,28 +7,13 @@
 #include <fmt/format.h>
 
 #include <pellucid/math/hash.h>
+#include <pellucid/study/record_json.h>
 #include <pellucid/transport/emission_guide.h>
 #include <pellucid/transport/photon_trace.h>
 
 namespace pellucid::check {
 
 namespace {
-
-[[nodiscard]] std::string methodName(Method method) {
-    switch (method) {
-        case Method::Photon:
-            return "photon";
-        case Method::Path:
-            return "path";
-        case Method::Light:
-            return "light";
-        case Method::Reference:
-            return "reference";
-        case Method::Bdpt:
-            return "bdpt";
-    }
-    return "?";
-}
 
 [[nodiscard]] std::uint64_t seedOf(const CheckContext& context, int repetition) {
     return hashCombine(context.seed, static_cast<std::uint64_t>(repetition));

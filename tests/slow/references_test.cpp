@@ -97,12 +97,6 @@ INSTANTIATE_TEST_SUITE_P(
         return name + (w.param.method == Method::Path ? "Path" : w.param.method == Method::Bdpt ? "Bdpt" : "Reference");
     });
 
-/// The photon method's allowance in a group; classes that it samples from the lamps have none.
-double photonAllowance(const std::string& group) {
-    if (group.ends_with("..L")) return 0.05;
-    return group.ends_with("DSL") ? 0.03 : 0.0;
-}
-
 class Ledger : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Ledger, PhotonsAgreeWithTheReferenceClassByClass) {

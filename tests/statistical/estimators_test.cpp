@@ -208,12 +208,6 @@ TEST(Estimators, TheGateSeesPlantedBugs) {
     }
 }
 
-/// What the photon method may be off by in a group: nothing where it samples lamps, the kernel's and the cache's bias else.
-double photonAllowance(const std::string& group) {
-    if (group.ends_with("..L")) return 0.05;
-    return group.ends_with("DSL") ? 0.03 : 0.0;
-}
-
 /// Class by class: a double count or a loss names itself.
 class ClassLedger : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 

@@ -1,17 +1,16 @@
 /// How eye samples are spread: over noisy pixels, and over both ways that an interface leads to a lamp. Neither may change
 /// what the image means, nor its bits with threads or a break.
-#include <filesystem>
-
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
+#include "../support/files.h"
+#include "../support/same_bits.h"
 #include "agreement.h"
 #include "small_scenes.h"
 
 namespace pellucid {
 namespace {
 
+using test::expectSameBits;
 using namespace testing;
 
 Settings with(Settings settings, const std::string& name, const std::string& value) {
@@ -94,12 +93,6 @@ RenderRequest adaptiveRequest(std::uint32_t samples) {
     return request;
 }
 
-void expectSameBits(const Image& a, const Image& b) {
-    ASSERT_EQ(a.channels(), b.channels());
-    for (std::size_t i = 0; i < a.pixels(); ++i)
-        for (int c = 0; c < a.channels(); ++c) ASSERT_EQ(a.at(i, c), b.at(i, c)) << "pixel " << i << ", channel " << c;
-}
-
 /// Photon paths are as many as their noise is worth: what decides that must outlive the break, too.
 TEST(EyeSamples, PhotonsByNoiseKeepTheBitsOverABreak) {
     const SmallScene small = glint();
@@ -111,13 +104,12 @@ TEST(EyeSamples, PhotonsByNoiseKeepTheBitsOverABreak) {
     const Image whole = render(scene, request, two).image;
     RenderRequest broken = request;
     broken.budget.samples = 12;
-    broken.checkpoint =
-        std::filesystem::temp_directory_path() / ("pellucid-photons-by-noise-" + std::to_string(::getpid()));
+    const test::TemporaryFolder folder;
+    broken.checkpoint = folder / "checkpoint";
     (void)render(scene, broken, one);
     broken.budget.samples = 60;
     broken.resume = true;
     const Image resumed = render(scene, broken, one).image;
-    std::filesystem::remove(broken.checkpoint);
     expectSameBits(whole, resumed);
 }
 
@@ -137,12 +129,12 @@ TEST(EyeSamples, SharesByNoiseKeepTheBits) {
     EXPECT_LT(least, most);
 
     RenderRequest broken = adaptiveRequest(9);
-    broken.checkpoint = std::filesystem::temp_directory_path() / ("pellucid-eye-samples-" + std::to_string(::getpid()));
+    const test::TemporaryFolder folder;
+    broken.checkpoint = folder / "checkpoint";
     (void)render(scene, broken, one);
     broken.budget.samples = 20;
     broken.resume = true;
     const Image resumed = render(scene, broken, one).image;
-    std::filesystem::remove(broken.checkpoint);
     expectSameBits(alone, resumed);
 }
 

@@ -2,10 +2,7 @@
 // comparison with the wrong exit status.
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 
@@ -23,10 +20,10 @@
 #include <pellucid/scene/scene.h>
 #include <pellucid/study/stiffness.h>
 
+#include "../support/command.h"
+
 namespace pellucid {
 namespace {
-
-namespace fs = std::filesystem;
 
 [[nodiscard]] std::string ringFile() { return PELLUCID_SOURCE_DIR "/scenes/ring.glb"; }
 
@@ -124,26 +121,10 @@ TEST(NoSilentTrouble, BreakdownsAreFoundWhereTheyAre) {
     EXPECT_NE(sweepsMarkdown({sweep}, "s.svg").find("path breaks down at 0.01"), std::string::npos);
 }
 
-class Command : public testing::Test {
+class Command : public test::CommandTest {
 protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  (std::string("pellucid_trouble_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    [[nodiscard]] int run(const std::string& arguments) const {
-        const int status = std::system(("'" PELLUCID_BINARY "' " + arguments + " >'" + (folder_ / "stdout").string() +
-                                        "' 2>'" + (folder_ / "stderr").string() + "' </dev/null")
-                                           .c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-    [[nodiscard]] std::string read(const char* name) const {
-        std::ifstream stream(folder_ / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
-    fs::path folder_;
+    [[nodiscard]] int run(const std::string& arguments) const { return runCommand(arguments).status; }
+    [[nodiscard]] std::string read(const char* name) const { return test::bytesOf(folder_ / name); }
 };
 
 TEST_F(Command, DebugSamplePrintsThePath) {
