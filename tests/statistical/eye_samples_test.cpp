@@ -1,5 +1,7 @@
 /// How eye samples are spread: over noisy pixels, and over both ways that an interface leads to a lamp. Neither may change
 /// what the image means, nor its bits with threads or a break.
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "../support/files.h"
@@ -93,6 +95,17 @@ RenderRequest adaptiveRequest(std::uint32_t samples) {
     return request;
 }
 
+/// The image of a render that broke off after `samples` and went on.
+Image overABreak(const Scene& scene, RenderRequest request, std::uint32_t samples, const Workers& workers) {
+    const test::TemporaryFolder folder;
+    request.checkpoint = folder / "checkpoint";
+    const auto all = std::exchange(request.budget.samples, samples);
+    (void)render(scene, request, workers);
+    request.budget.samples = all;
+    request.resume = true;
+    return render(scene, request, workers).image;
+}
+
 /// Photon paths are as many as their noise is worth: what decides that must outlive the break, too.
 TEST(EyeSamples, PhotonsByNoiseKeepTheBitsOverABreak) {
     const SmallScene small = glint();
@@ -102,15 +115,7 @@ TEST(EyeSamples, PhotonsByNoiseKeepTheBitsOverABreak) {
     setParameter(request.settings, "photon.caustic", "auto");
     setParameter(request.settings, "photon.chance", "on");
     const Image whole = render(scene, request, two).image;
-    RenderRequest broken = request;
-    broken.budget.samples = 12;
-    const test::TemporaryFolder folder;
-    broken.checkpoint = folder / "checkpoint";
-    (void)render(scene, broken, one);
-    broken.budget.samples = 60;
-    broken.resume = true;
-    const Image resumed = render(scene, broken, one).image;
-    expectSameBits(whole, resumed);
+    expectSameBits(whole, overABreak(scene, request, 12, one));
 }
 
 TEST(EyeSamples, SharesByNoiseKeepTheBits) {
@@ -128,14 +133,7 @@ TEST(EyeSamples, SharesByNoiseKeepTheBits) {
     }
     EXPECT_LT(least, most);
 
-    RenderRequest broken = adaptiveRequest(9);
-    const test::TemporaryFolder folder;
-    broken.checkpoint = folder / "checkpoint";
-    (void)render(scene, broken, one);
-    broken.budget.samples = 20;
-    broken.resume = true;
-    const Image resumed = render(scene, broken, one).image;
-    expectSameBits(alone, resumed);
+    expectSameBits(alone, overABreak(scene, request, 9, one));
 }
 
 }  // namespace
