@@ -110,7 +110,7 @@ Accel::Accel(std::span<const Mesh> meshes, std::span<const std::uint32_t> meshOf
     impl_->device = rtcNewDevice("set_affinity=0");
     if (impl_->device == nullptr)
         throw Error(ErrorKind::CannotFinish, "Embree could not be started", "acceleration structure",
-                    "check that libembree3 suits this machine");
+                    "check that libembree3 suits this machine and that memory is left");
     impl_->scene = impl_->newScene();
     std::uint64_t triangles = 0;
     for (const std::uint32_t m : meshOfGeometry) triangles += meshes[m].triangles.size();

@@ -93,6 +93,20 @@ std::optional<std::size_t> breakdown(const Sweep& sweep, std::size_t method) noe
     return std::nullopt;
 }
 
+std::optional<std::size_t> blindness(const Sweep& sweep, std::size_t method) noexcept {
+    std::size_t from = sweep.steps.size();
+    while (from > 0 && sweep.steps[from - 1].by[method].bias <= -0.999) --from;
+    return from < sweep.steps.size() ? std::optional(from) : std::nullopt;
+}
+
+std::optional<std::size_t> certainBias(const Sweep& sweep, std::size_t method) noexcept {
+    for (std::size_t i = 0; i < sweep.steps.size(); ++i) {
+        const SweepFigures& f = sweep.steps[i].by[method];
+        if (f.bias > -0.999 && std::fabs(f.bias) > std::max(kSmallBias, kCertainly * f.interval)) return i;
+    }
+    return std::nullopt;
+}
+
 std::vector<std::string_view> sweepNames() {
     std::vector<std::string_view> names;
     for (const Dial& dial : dials()) names.emplace_back(dial.name);

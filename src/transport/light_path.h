@@ -18,8 +18,9 @@ namespace pellucid::light_path {
 
 inline constexpr std::size_t kPathsPerChunk = 2048;
 inline constexpr std::uint64_t kEmissionDimensions = 5, kDimensionsPerVertex = 4;
-/// Light that grazes the true surface this flatly is dropped: its correction for shading normals would explode.
-inline constexpr float kMinGeometricCosine = 0.01F;
+/// Light whose correction for shading normals is above this is dropped: it would explode. Only where the normals differ, so
+/// that flat surfaces lose nothing, however flatly they are grazed (a room of 1000 bounces would lose a tenth of its light).
+inline constexpr float kMaxShading = 100.0F;
 
 struct LightPath {
     Ray ray;
@@ -61,11 +62,12 @@ struct Arrival {
         path.energy.absorbed -= path.watts();
     }
     const float geometric = std::fabs(glm::dot(wi, bsdf.geometricNormal()));
-    if (geometric < kMinGeometricCosine) {
+    const float shaded = std::fabs(glm::dot(wi, bsdf.shadingNormal()));
+    if (!(geometric > 0.0F) || shaded > kMaxShading * geometric) {
         path.energy.dropped += path.watts();
         return std::nullopt;
     }
-    return Arrival{*hit, bsdf, wi, std::fabs(glm::dot(wi, bsdf.shadingNormal())) / geometric};
+    return Arrival{*hit, bsdf, wi, shaded / geometric};
 }
 
 /// Scatters flux among `kinds` (`by` receives the lobe's own); the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]

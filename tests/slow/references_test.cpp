@@ -89,6 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Witness{"cornell-boxes", Method::Path, 24, 0.0}, Witness{"cornell-boxes", Method::Bdpt, 12, 0.0},
                       Witness{"corridor", Method::Bdpt, 24, 0.0}, Witness{"cornell-glass", Method::Reference, 24, 0.02},
                       Witness{"cornell-glass", Method::Bdpt, 24, 0.02}, Witness{"ring", Method::Reference, 24, 0.02},
+                      Witness{"ring", Method::Bdpt, 48, 0.02}, Witness{"goblet", Method::Bdpt, 24, 0.02},
                       Witness{"pool", Method::Reference, 24, 0.02}, Witness{"goblet", Method::Reference, 24, 0.02},
                       Witness{"peer-box", Method::Reference, 8, 0.01}),
     [](const auto& w) {

@@ -240,6 +240,33 @@ INSTANTIATE_TEST_SUITE_P(Ways, ClassLedger,
                          ::testing::Values(std::pair{"", ""}, std::pair{"photon.chance", "on"},
                                            std::pair{"photon.caustic_map", "off"}));
 
+/// Two estimators that both carry the caustics, path tracing with a caustic pass of light tracing on top: the gate says which
+/// class is counted twice. And one that carries none of them: which is lost.
+TEST(ClassGate, NamesTheClassThatIsCountedTwiceOrLost) {
+    const Workers workers;
+    const SmallScene small = smoothCasters();
+    const Scene scene = made(small, workers);
+    Rendering path{Method::Path, 64, 6};
+    path.width = path.height = 16;
+    path.layers = {"classes"};
+    const std::vector<Image> right = renderSeeds(scene, path, workers);
+    path.firstSeed = 400;
+    const auto planted = [&](double factor) {
+        std::vector<Image> images = renderSeeds(scene, path, workers);
+        for (Image& image : images)
+            for (const char* c : {"R", "G", "B"}) {
+                const int channel = image.channel(std::string("class.EDSL.") + c);
+                for (std::size_t i = 0; i < image.pixels(); ++i)
+                    image.at(i, channel) = static_cast<float>(factor * static_cast<double>(image.at(i, channel)));
+            }
+        return images;
+    };
+    const auto none = [](const std::string&) { return 0.0; };
+    for (const double factor : {1.0, 2.0, 0.0})
+        for (const GroupDifference& d : compareGroups(right, planted(factor), none, 0.0))
+            EXPECT_EQ(d.holds(), factor == 1.0 || d.group != "EDSL") << factor << ", " << d.group;
+}
+
 TEST(PathStrings, StringsAndGroups) {
     PathString path;
     EXPECT_EQ(path.name(), "EL");

@@ -121,6 +121,27 @@ TEST(NoSilentTrouble, BreakdownsAreFoundWhereTheyAre) {
     EXPECT_NE(sweepsMarkdown({sweep}, "s.svg").find("path breaks down at 0.01"), std::string::npos);
 }
 
+/// A black picture is as far off at the first step as at the last: no breakdown by the error, but it must be told.
+TEST(NoSilentTrouble, SweepsTellOfNoiseBlindnessAndBias) {
+    Sweep sweep;
+    for (const auto& [value, path, photon] :
+         {std::tuple(1.0, SweepFigures{3.2, 0.02, 0.5}, SweepFigures{0.05, 0.01, 0.02}),
+          std::tuple(0.1, SweepFigures{1.0, -1.0, 0.0}, SweepFigures{0.06, -0.1, 0.06}),
+          std::tuple(0.01, SweepFigures{1.0, -1.0, 0.0}, SweepFigures{0.11, -0.1, 0.04})})
+        sweep.steps.push_back({value, {path, photon}});
+    EXPECT_FALSE(breakdown(sweep, 0));
+    EXPECT_EQ(blindness(sweep, 0), 1U);
+    EXPECT_FALSE(certainBias(sweep, 0));
+    EXPECT_FALSE(blindness(sweep, 1));
+    EXPECT_EQ(certainBias(sweep, 1), 2U);
+    EXPECT_EQ(sweepVerdict(sweep, 0),
+              "path is short of samples from the first step on, with an error of 320 %; it finds no light at all from "
+              "0.1 on.");
+    EXPECT_NE(sweepVerdict(sweep, 1).find("is biased at 0.01"), std::string::npos);
+    sweep.steps.resize(1);
+    EXPECT_EQ(sweepVerdict(sweep, 1), "photon holds over the whole sweep.");
+}
+
 class Command : public test::CommandTest {
 protected:
     [[nodiscard]] int run(const std::string& arguments) const { return runCommand(arguments).status; }
