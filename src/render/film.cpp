@@ -129,7 +129,7 @@ bool Film::restore(const std::vector<char>& bytes) {
     if (bytes.size() != savedSize()) return false;
     const char* from = bytes.data();
     const auto take = [&from](void* to, std::size_t size) {
-        std::memcpy(to, from, size);
+        if (size > 0) std::memcpy(to, from, size);  // an empty vector has no address
         from += size;
     };
     take(&samples_, sizeof samples_);

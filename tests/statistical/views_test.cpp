@@ -242,12 +242,16 @@ TEST_F(Views, ADamagedFileIsRefused) {
 /// Mean square of the difference of two frames where they show the same, over what their pixels' noise alone would make.
 [[nodiscard]] double differenceByNoise(const Image& a, const Image& b, int shift) {
     double sum = 0.0, noise = 0.0;
-    const int value = a.channel("G"), variance = a.channel("variance.G");
+    const int red = a.channel("R"), variance = a.channel("variance.Y");
+    const auto luminanceAt = [red](const Image& image, std::size_t pixel) {
+        return static_cast<double>(
+            luminance(Rgb(image.at(pixel, red), image.at(pixel, red + 1), image.at(pixel, red + 2))));
+    };
     for (int y = 0; y < a.height(); ++y)
         for (int x = shift; x < a.width(); ++x) {
             const auto pixel = static_cast<std::size_t>(y * a.width() + x),
                        same = pixel - static_cast<std::size_t>(shift);
-            sum += std::pow(static_cast<double>(a.at(pixel, value)) - static_cast<double>(b.at(same, value)), 2.0);
+            sum += std::pow(luminanceAt(a, pixel) - luminanceAt(b, same), 2.0);
             noise += static_cast<double>(a.at(pixel, variance)) + static_cast<double>(b.at(same, variance));
         }
     return sum / noise;
