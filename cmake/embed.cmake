@@ -25,7 +25,7 @@ endif()
 function(pellucid_embed_report target)
     set(folder ${PROJECT_SOURCE_DIR}/src/study/report)
     set(output ${PROJECT_BINARY_DIR}/embedded/report_parts.cpp)
-    set(files kTemplate=${folder}/template.html kStyle=${folder}/report.css kD3=${PELLUCID_D3}
+    set(files kHead=${folder}/head.html kTemplate=${folder}/template.html kStyle=${folder}/report.css kD3=${PELLUCID_D3}
               kCharts=${folder}/charts.js kViewer=${folder}/viewer.js kTables=${folder}/tables.js
               kTuneTemplate=${folder}/tune.html kTune=${folder}/tune.js)
     set(sources ${files})

@@ -1,5 +1,5 @@
-/// The command line as values: parsed and checked for form, so that the commands see no text. The .cpp is the only one
-/// that sees CLI11.
+/// The command line as values: parsed and checked for form, so that the commands see no text, and only the
+/// files of options see CLI11.
 #pragma once
 
 #include <cstdint>

@@ -9,6 +9,9 @@ namespace pellucid {
 
 using Clock = std::chrono::steady_clock;
 
+/// Exit status of a command that was interrupted; what was done is saved.
+constexpr int kInterrupted = 130;
+
 /// `started`: when the program began; a budget of time counts from there.
 [[nodiscard]] int runRender(const RenderArguments& arguments, Clock::time_point started);
 /// render --debug-sample.

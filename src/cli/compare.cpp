@@ -2,15 +2,12 @@
 #include <pellucid/study/compare.h>
 
 #include "commands.h"
-#include "process.h"
 #include "scene_shelf.h"
 #include "terminal.h"
-#include "terminal_progress.h"
+#include "terminal_session.h"
 
 namespace pellucid {
 namespace {
-
-constexpr int kInterrupted = 130;
 
 [[nodiscard]] CompareRequest requestOf(const CompareArguments& arguments) {
     CompareRequest request;
@@ -35,21 +32,13 @@ constexpr int kInterrupted = 130;
 }  // namespace
 
 int runCompare(const CompareArguments& arguments) {
-    TerminalProgress terminal(arguments.common.quiet);
-    const LogSink print = terminalLog(arguments.common.quiet);
-    const LogSink log = [&](LogLevel level, std::string_view message) {
-        terminal.clear();
-        logTo(print, level, message);
-    };
+    TerminalSession terminal(arguments.common.quiet);
+    const LogSink log = terminal.log();
     const Workers workers(arguments.common.threads);
     SceneShelf shelf(arguments.common, workers, log);
-    Progress progress;
-    progress.report = [&terminal](const ProgressReport& report) { terminal.report(report); };
-    progress.interrupted = interruptAsked;
-    catchInterrupts();
     const CompareOutcome outcome = compare(
-        requestOf(arguments), [&shelf](const Settings& settings) { return shelf.scene(settings); }, workers, progress,
-        log);
+        requestOf(arguments), [&shelf](const Settings& settings) { return shelf.scene(settings); }, workers,
+        terminal.progress(), log);
     terminal.clear();
     if (!arguments.common.quiet && !outcome.table.empty()) printResult(outcome.table);
     if (outcome.interrupted)

@@ -42,7 +42,8 @@ int main(int count, char** values) {
     const auto started = Clock::now();
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write, with its own message
     exitOnInterrupts();             // until a command has something to save
-    flushDenormalsOnThisThread();   // what runs outside of Workers computes as what runs inside
+    failOnFullFiles();
+    flushDenormalsOnThisThread();  // what runs outside of Workers computes as what runs inside
     try {
         return std::visit(Run{started}, parseArguments(count, values));
     } catch (const Error& error) {

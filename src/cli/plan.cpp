@@ -14,14 +14,7 @@ int runPlan(const PlanArguments& arguments) {
     const auto scene = loadScene(common, true, workers, log);
     const RenderRecord plan = planOnly(*scene, makeRequest(common), workers, log);
     const Camera camera = scene->camera(common.camera, common.width, common.height);
-    RecordContext context;
-    context.version = PELLUCID_VERSION;
-    context.sceneFile = common.scene;
-    context.sceneHash = scene->hash();
-    context.method = common.method;
-    context.width = camera.width();
-    context.height = camera.height();
-    context.seed = common.seed;
+    const RecordContext context = recordContext(common, *scene, camera.width(), camera.height());
     printResult(arguments.json ? planJson(plan, context) : planText(plan, context));
     return 0;
 }

@@ -34,6 +34,8 @@ void handleInterrupts(void (*handler)(int)) {
 
 void exitOnInterrupts() { handleInterrupts(leave); }
 
+void failOnFullFiles() { std::signal(SIGXFSZ, SIG_IGN); }
+
 void catchInterrupts() { handleInterrupts(onInterrupt); }
 
 bool interruptAsked() noexcept { return interrupted.load(std::memory_order_relaxed); }

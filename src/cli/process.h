@@ -9,6 +9,9 @@ namespace pellucid {
 /// files are written aside and renamed.
 void exitOnInterrupts();
 
+/// From now on a file that reaches the limit on its size is an error like a full disk, not the end of the program.
+void failOnFullFiles();
+
 /// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program at once.
 void catchInterrupts();
 [[nodiscard]] bool interruptAsked() noexcept;

@@ -16,12 +16,10 @@
 #include "process.h"
 #include "scene_loading.h"
 #include "terminal.h"
-#include "terminal_progress.h"
+#include "terminal_session.h"
 
 namespace pellucid {
 namespace {
-
-constexpr int kInterrupted = 130;
 
 [[nodiscard]] double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -33,29 +31,6 @@ void checkOutputs(const RenderArguments& arguments) {
     for (const std::string& file : {arguments.record, arguments.checkpoint, arguments.cache})
         if (!file.empty()) checkFolderWritable(file);
 }
-
-/// A progress bar on a terminal, and messages that do not tear it.
-class Terminal {
-public:
-    explicit Terminal(bool quiet) : bar_(quiet), print_(terminalLog(quiet)) { catchInterrupts(); }
-
-    [[nodiscard]] Progress progress() {
-        Progress progress;
-        progress.report = [this](const ProgressReport& report) { bar_.report(report); };
-        progress.interrupted = interruptAsked;
-        return progress;
-    }
-    [[nodiscard]] LogSink log() {
-        return [this](LogLevel level, std::string_view message) {
-            bar_.clear();
-            logTo(print_, level, message);
-        };
-    }
-
-private:
-    TerminalProgress bar_;
-    LogSink print_;
-};
 
 [[nodiscard]] ImageMetadata metadataOf(const RecordContext& context, const RenderRecord& record) {
     ImageMetadata metadata{{"pellucid.version", context.version},
@@ -111,14 +86,7 @@ void tellResult(const RenderResult& result, const RecordContext& context, const 
 
 [[nodiscard]] RecordContext contextOf(const RenderArguments& arguments, const Scene& scene,
                                       const RenderResult& result) {
-    RecordContext context;
-    context.version = PELLUCID_VERSION;
-    context.sceneFile = arguments.common.scene;
-    context.sceneHash = scene.hash();
-    context.method = arguments.common.method;
-    context.width = result.image.width();
-    context.height = result.image.height();
-    context.seed = arguments.common.seed;
+    RecordContext context = recordContext(arguments.common, scene, result.image.width(), result.image.height());
     context.images = arguments.outputs;
     context.peakRssBytes = peakRssBytes();
     context.interrupted = result.interrupted;
@@ -142,7 +110,7 @@ void writeResult(const RenderArguments& arguments, const Scene& scene, const Ren
     std::set<std::string> distinct(cameras.begin(), cameras.end());
     if (distinct.size() < cameras.size() || distinct.contains(""))
         for (std::size_t i = 0; i < cameras.size(); ++i) cameras[i] = std::to_string(i);
-    Terminal terminal(arguments.common.quiet);
+    TerminalSession terminal(arguments.common.quiet);
     const LogSink log = terminal.log();
     bool interrupted = false;
     std::size_t frames = 0;
@@ -177,7 +145,7 @@ int runRender(const RenderArguments& arguments, Clock::time_point started) {
     request.pointsFolder = arguments.pointsFolder;
     if (!arguments.views.empty()) return runViews(arguments, *scene, request, workers) ? kInterrupted : 0;
     request.budget.startedSecondsAgo = secondsSince(started);
-    Terminal terminal(arguments.common.quiet);
+    TerminalSession terminal(arguments.common.quiet);
     const RenderResult result = render(*scene, request, workers, terminal.progress(), terminal.log());
     writeResult(arguments, *scene, result, terminal.log());
     return result.interrupted ? kInterrupted : 0;

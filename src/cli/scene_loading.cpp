@@ -45,4 +45,16 @@ RenderRequest makeRequest(const SceneArguments& arguments) {
     return request;
 }
 
+RecordContext recordContext(const SceneArguments& arguments, const Scene& scene, int width, int height) {
+    RecordContext context;
+    context.version = PELLUCID_VERSION;
+    context.sceneFile = arguments.scene;
+    context.sceneHash = scene.hash();
+    context.method = arguments.method;
+    context.width = width;
+    context.height = height;
+    context.seed = arguments.seed;
+    return context;
+}
+
 }  // namespace pellucid

@@ -8,6 +8,7 @@
 #include <pellucid/base/parallel.h>
 #include <pellucid/render/render.h>
 #include <pellucid/scene/scene.h>
+#include <pellucid/study/record_json.h>
 
 #include "arguments.h"
 
@@ -19,5 +20,8 @@ namespace pellucid {
                                                const std::string& viewsFile = {});
 
 [[nodiscard]] RenderRequest makeRequest(const SceneArguments& arguments);
+
+/// What a record of an image of this size says beside its figures.
+[[nodiscard]] RecordContext recordContext(const SceneArguments& arguments, const Scene& scene, int width, int height);
 
 }  // namespace pellucid

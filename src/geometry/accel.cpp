@@ -41,6 +41,22 @@ constexpr float kMaxCoordinate = 1.8e18F;
     return geometry;
 }
 
+/// At time 0, for all masks.
+[[nodiscard]] RTCRay embreeRay(const Ray& ray) noexcept {
+    return {ray.origin.x,
+            ray.origin.y,
+            ray.origin.z,
+            0.0F,
+            ray.direction.x,
+            ray.direction.y,
+            ray.direction.z,
+            0.0F,
+            ray.tMax,
+            0xffffffffU,
+            0,
+            0};
+}
+
 }  // namespace
 
 struct Accel::Impl {
@@ -94,7 +110,7 @@ Accel::Accel(std::span<const Mesh> meshes, std::span<const std::uint32_t> meshOf
     impl_->device = rtcNewDevice("set_affinity=0");
     if (impl_->device == nullptr)
         throw Error(ErrorKind::CannotFinish, "Embree could not be started", "acceleration structure",
-                    "check that libembree3 suits this machine");
+                    "check that libembree3 suits this machine and that memory is left");
     impl_->scene = impl_->newScene();
     std::uint64_t triangles = 0;
     for (const std::uint32_t m : meshOfGeometry) triangles += meshes[m].triangles.size();
@@ -126,18 +142,7 @@ bool Accel::intersect(const Ray& ray, RawHit& hit) const noexcept {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit rh;
-    rh.ray = {ray.origin.x,
-              ray.origin.y,
-              ray.origin.z,
-              0.0F,
-              ray.direction.x,
-              ray.direction.y,
-              ray.direction.z,
-              0.0F,
-              ray.tMax,
-              0xffffffffU,
-              0,
-              0};
+    rh.ray = embreeRay(ray);
     rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     {
@@ -157,18 +162,7 @@ bool Accel::occluded(const Ray& ray) const noexcept {
     if (!usable(ray)) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay r{ray.origin.x,
-             ray.origin.y,
-             ray.origin.z,
-             0.0F,
-             ray.direction.x,
-             ray.direction.y,
-             ray.direction.z,
-             0.0F,
-             ray.tMax,
-             0xffffffffU,
-             0,
-             0};
+    RTCRay r = embreeRay(ray);
     {
         const TrapsMasked masked;
         rtcOccluded1(impl_->scene, &context, &r);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -223,42 +222,6 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
 }
 
 }  // namespace
-
-Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, float kernelFootprints,
-              float largestKernel, const Workers& workers) {
-    Survey s;
-    const auto width = static_cast<std::size_t>(camera.width());
-    s.points.resize(width * static_cast<std::size_t>(camera.height()));
-    std::vector<std::uint64_t> rays((s.points.size() + 1023) / 1024, 0);
-    workers.forRanges(s.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        Walk walk(context);
-        for (std::size_t i = begin; i < end; ++i) {
-            Sampler sampler(hash64(seed ^ 0x737572766579ULL), i, 0);
-            const CameraRay ray =
-                camera.ray({static_cast<float>(i % width) + 0.5F, static_cast<float>(i / width) + 0.5F}, {0.5F, 0.5F});
-            s.points[i] = walk.findGatherPoint({ray.ray, ray.footprintAtOrigin, ray.footprintSpread}, sampler);
-        }
-        rays[begin / 1024] = walk.rays();
-    });
-    s.rays = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
-    std::vector<float> footprints;
-    for (const GatherPoint& p : s.points)
-        if (p.valid) footprints.push_back(p.footprint);
-    s.receivers = footprints.size();
-    if (footprints.empty()) return s;
-    std::nth_element(footprints.begin(), footprints.begin() + static_cast<std::ptrdiff_t>(footprints.size() / 2),
-                     footprints.end());
-    s.medianFootprint = footprints[footprints.size() / 2];
-    // Cells of half the reach of all kernels but the largest few: a mark takes at most five cells along an axis.
-    const auto nearlyAll = footprints.begin() + static_cast<std::ptrdiff_t>(footprints.size() * 95 / 100);
-    std::nth_element(footprints.begin(), nearlyAll, footprints.end());
-    const auto reach = [&](float footprint) { return std::min(kernelFootprints * footprint, largestKernel); };
-    const float cell = std::max({8.0F * s.medianFootprint, 0.5F * reach(*nearlyAll), 1e-4F});
-    s.visible = VisibleCells(cell);
-    for (const GatherPoint& p : s.points)
-        if (p.valid) s.visible.mark(p.position, std::min(reach(p.footprint), 2.0F * cell));
-    return s;
-}
 
 GenerationSize Plan::generation(std::uint32_t number) const noexcept {
     constexpr double kPhotonGrowth = 1.5, kErrorPower = 0.25, kMostPhotons = 1e7;

@@ -34,14 +34,15 @@ std::vector<Finding> parabola(const CheckContext& context) {
                      k = 1.0 + (x * x + y * y) / (4.0 * f * f);
         return intensity / (f * f * k * k);
     });
-    return measure(context, {b.description(),
-                             {},
-                             expected,
-                             kPiD / kRho,
-                             "beam irradiance",
-                             {{Method::Photon, 16, 0.01, 0.02, "caustic"}, {Method::Light, 16, 0.003, 0.02, "caustic"}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context,
+                        {b.description(),
+                         {},
+                         expected,
+                         kPiD / kRho,
+                         "beam irradiance",
+                         {{Method::Photon, 4, 0.01, 0.02, "caustic"}, {Method::Light, 8, 0.003, 0.02, "caustic"}},
+                         16,
+                         smallSettings()});
 }
 
 /// A closed ellipsoid of mirror, the light in one focus, a small ball around the other: all that misses the ball directly
@@ -124,14 +125,15 @@ std::vector<Finding> nephroidFlux(const CheckContext& context) {
         const double length = glm::length(glm::dvec2(x, y) - c.radius * glm::dvec2(std::cos(phi), std::sin(phi)));
         return c.irradiance * std::sin(c.slant) / std::fabs(1.0 - 2.0 * length / (c.radius * std::cos(phi)));
     });
-    return measure(context, {b.description(),
-                             {},
-                             expected,
-                             kPiD / kRho,
-                             "irradiance before the cusp",
-                             {{Method::Photon, 16, 0.01, 0.02, "caustic"}, {Method::Light, 16, 0.005, 0.02, "caustic"}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context,
+                        {b.description(),
+                         {},
+                         expected,
+                         kPiD / kRho,
+                         "irradiance before the cusp",
+                         {{Method::Photon, 4, 0.01, 0.02, "caustic"}, {Method::Light, 8, 0.005, 0.02, "caustic"}},
+                         16,
+                         smallSettings()});
 }
 
 /// Photons along a strip on the axis: the densest place is the cusp, but for the strip's width, in which the two branches

@@ -33,14 +33,15 @@ std::vector<Finding> pointInMirror(const CheckContext& context) {
     SceneBuilder b = floorAndMirror();
     b.point({0.4, -0.2, 1.0}, 2.0);
     const double image = overPatch([](const glm::dvec3& p) { return pointIrradiance(p, kUp, {1.6, -0.2, 1.0}, 2.0); });
-    return measure(context, {b.description(),
-                             {},
-                             image,
-                             kPiD / kRho,
-                             "irradiance",
-                             {{Method::Photon, 16, 0.01, 0.02, "caustic"}, {Method::Light, 16, 0.0, 0.02, "caustic"}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context,
+                        {b.description(),
+                         {},
+                         image,
+                         kPiD / kRho,
+                         "irradiance",
+                         {{Method::Photon, 4, 0.01, 0.02, "caustic"}, {Method::Light, 8, 0.0, 0.02, "caustic"}},
+                         16,
+                         smallSettings()});
 }
 
 /// A lamp that path tracing can hit: the image of a polygon.
@@ -50,16 +51,18 @@ std::vector<Finding> lampInMirror(const CheckContext& context) {
     const std::array<glm::dvec3, 4> image{
         glm::dvec3(2.0, -0.7, 0.8), {2.0, 0.7, 0.8}, {1.05, 0.7, 0.8}, {1.05, -0.7, 0.8}};
     const double expected = 5.0 * overPatch([&](const glm::dvec3& p) { return polygonIrradiance(p, kUp, image); });
-    return measure(context, {b.description(),
-                             {},
-                             expected,
-                             kPiD / kRho,
-                             "irradiance",
-                             {{Method::Path, 768, 0.0, 0.06, "caustic"},
-                              {Method::Photon, 16, 0.01, 0.03, "caustic"},
-                              {Method::Light, 48, 0.0, 0.04, "caustic"}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context, {b.description(),
+                                  {},
+                                  expected,
+                                  kPiD / kRho,
+                                  "irradiance",
+                                  {{Method::Path, 192, 0.0, 0.06, "caustic"},
+                                   {Method::Photon, 8, 0.01, 0.04, "caustic"},
+                                   {Method::Light, 32, 0.0, 0.05, "caustic"},
+                                   {Method::Bdpt, 48, 0.0, 0.15, "caustic"},
+                                   {Method::Reference, 4, 0.0, 0.15, "caustic"}},
+                                  16,
+                                  smallSettings()});
 }
 
 /// Mirrors of reflectance f0 (Schlick) at x = 0 and x = w: all images of the light, each weakened by its reflections.
@@ -85,14 +88,15 @@ std::vector<Finding> twoMirrors(const CheckContext& context) {
             }
         return sum;
     };
-    return measure(context, {b.description(),
-                             {},
-                             meanOverSquare(e, 8),
-                             kPiD / kRho,
-                             "irradiance",
-                             {{Method::Photon, 32, 0.01, 0.02, "caustic"}, {Method::Light, 32, 0.0, 0.03, "caustic"}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context,
+                        {b.description(),
+                         {},
+                         meanOverSquare(e, 8),
+                         kPiD / kRho,
+                         "irradiance",
+                         {{Method::Photon, 8, 0.01, 0.04, "caustic"}, {Method::Light, 16, 0.0, 0.03, "caustic"}},
+                         16,
+                         smallSettings()});
 }
 
 /// Two facing mirrors that glow: each adds its own light once a bounce.
@@ -105,14 +109,14 @@ std::vector<Finding> glowingMirrors(const CheckContext& context) {
         b.square({0, 0, 0}, {0, 0, 1}, 1.0, m);
         b.square({0, 0, 1}, {0, 0, -1}, 1.0, m);
         b.view(glm::dvec3(0.0), kUp, 1.0, 0.5);
-        auto found = measure(context, {b.description(),
-                                       {},
-                                       1.0 / (1.0 - static_cast<double>(r)),
-                                       1.0,
-                                       fmt::format("radiance at R = {}", r),
-                                       {{Method::Path, 32, 0.0, 0.05}, {Method::Photon, 16, 0.0, 0.1}},
-                                       16,
-                                       smallSettings()});
+        auto found = measureByAll(context, {b.description(),
+                                            {},
+                                            1.0 / (1.0 - static_cast<double>(r)),
+                                            1.0,
+                                            fmt::format("radiance at R = {}", r),
+                                            {{Method::Path, 8, 0.0, 0.05}, {Method::Photon, 16, 0.0, 0.1}},
+                                            16,
+                                            smallSettings()});
         all.insert(all.end(), found.begin(), found.end());
     }
     return all;
@@ -130,14 +134,14 @@ std::vector<Finding> cornerCube(const CheckContext& context) {
     b.square(axis * 6.0, -axis, 3.0, lamp(3.0F));
     b.view(axis * 0.5, axis, 0.5, 3.0);
     const double expected = 3.0 * schlick(axis.x, f0) * schlick(axis.y, f0) * schlick(axis.z, f0);
-    return measure(context, {b.description(),
-                             {},
-                             expected,
-                             1.0,
-                             "radiance sent back",
-                             {{Method::Path, 64, 0.0}, {Method::Photon, 64, 0.0}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context, {b.description(),
+                                  {},
+                                  expected,
+                                  1.0,
+                                  "radiance sent back",
+                                  {{Method::Path, 16, 0.0}, {Method::Photon, 64, 0.0}},
+                                  16,
+                                  smallSettings()});
 }
 
 }  // namespace

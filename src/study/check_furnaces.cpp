@@ -13,6 +13,14 @@ namespace pellucid::check {
 
 namespace {
 
+/// Where every record sees much the same, fewer gather rays and photons are enough.
+[[nodiscard]] Settings furnaceSettings() {
+    Settings s = smallSettings();
+    s.gatherRays = 100;
+    s.globalPhotons = 8000;
+    return s;
+}
+
 /// The unit box, all faces alike, seen from within.
 [[nodiscard]] SceneBuilder closedBox(float reflectance, float emission) {
     SceneBuilder b;
@@ -32,7 +40,7 @@ std::vector<Finding> convexInSky(const CheckContext& context) {
                                   0.7 * 2.0,
                                   1.0,
                                   "radiance rho L",
-                                  {{Method::Path, 64, 0.0}, {Method::Photon, 32, 0.005}},
+                                  {{Method::Path, 16, 0.0}, {Method::Photon, 32, 0.005}},
                                   16,
                                   smallSettings()});
 }
@@ -41,14 +49,14 @@ std::vector<Finding> furnace(const CheckContext& context) {
     std::vector<Finding> all;
     for (const float rho : {0.2F, 0.5F, 0.8F}) {
         SceneBuilder b = closedBox(rho, 1.0F);
-        auto found = measure(context, {b.description(),
-                                       {},
-                                       1.0 / (1.0 - static_cast<double>(rho)),
-                                       1.0,
-                                       fmt::format("radiance at rho = {:.1f}", rho),
-                                       {{Method::Path, 64, 0.0}, {Method::Photon, 4, 0.01}},
-                                       16,
-                                       smallSettings()});
+        auto found = measureByAll(context, {b.description(),
+                                            {},
+                                            1.0 / (1.0 - static_cast<double>(rho)),
+                                            1.0,
+                                            fmt::format("radiance at rho = {:.1f}", rho),
+                                            {{Method::Path, 16, 0.0}, {Method::Photon, 4, 0.01, 0.03}},
+                                            16,
+                                            furnaceSettings()});
         all.insert(all.end(), found.begin(), found.end());
     }
     return all;
@@ -61,14 +69,14 @@ std::vector<Finding> bounces(const CheckContext& context) {
         SceneBuilder b = closedBox(0.8F, 1.0F);
         Settings settings = smallSettings();
         settings.maxDepth = n;
-        auto found = measure(context, {b.description(),
-                                       {},
-                                       (1.0 - std::pow(rho, n + 1)) / (1.0 - rho),
-                                       1.0,
-                                       fmt::format("radiance after {} bounces", n),
-                                       {{Method::Path, 32, 0.0}},
-                                       16,
-                                       settings});
+        auto found = measureByAll(context, {b.description(),
+                                            {},
+                                            (1.0 - std::pow(rho, n + 1)) / (1.0 - rho),
+                                            1.0,
+                                            fmt::format("radiance after {} bounces", n),
+                                            {{Method::Path, 8, 0.0}},
+                                            16,
+                                            settings});
         all.insert(all.end(), found.begin(), found.end());
     }
     return all;
@@ -82,19 +90,22 @@ std::vector<Finding> integratingSphere(const CheckContext& context) {
     b.point({0.4, 0.1, -0.2}, intensity);
     const glm::dvec3 wall = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));
     b.view(wall, -wall, 0.4, 0.3);
-    return measure(context, {b.description(),
-                             {},
-                             flux * rho / (area * (1.0 - rho)),
-                             kPiD / rho,
-                             "indirect irradiance",
-                             {{Method::Path, 512, 0.0, 0.02, "indirect"}, {Method::Photon, 4, 0.02, 0.03, "indirect"}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context,
+                        {b.description(),
+                         {},
+                         flux * rho / (area * (1.0 - rho)),
+                         kPiD / rho,
+                         "indirect irradiance",
+                         {{Method::Path, 128, 0.0, 0.02, "indirect"}, {Method::Photon, 4, 0.02, 0.03, "indirect"}},
+                         16,
+                         smallSettings()});
 }
 
 /// Mirrors for side walls make the plates infinite.
 std::vector<Finding> parallelPlates(const CheckContext& context) {
     const double rho1 = 0.5, rho2 = 0.8, e1 = 1.0, e2 = 0.2;
+    Settings settings = furnaceSettings();
+    settings.causticPhotons = 4000;
     std::vector<Finding> all;
     for (const bool lower : {true, false}) {
         SceneBuilder b;
@@ -107,14 +118,14 @@ std::vector<Finding> parallelPlates(const CheckContext& context) {
         b.quad({-1, 1, 0}, {2, 0, 0}, {0, 0, 1}, wall);
         b.view({0.1, 0.2, lower ? 0.0 : 1.0}, {0, 0, lower ? 1.0 : -1.0}, 1.0, 0.5);
         const double expected = lower ? (e1 + rho1 * e2) / (1.0 - rho1 * rho2) : (e2 + rho2 * e1) / (1.0 - rho1 * rho2);
-        auto found = measure(context, {b.description(),
-                                       {},
-                                       expected,
-                                       1.0,
-                                       lower ? "radiance of plate 1" : "radiance of plate 2",
-                                       {{Method::Path, 64, 0.0, 0.03}, {Method::Photon, 8, 0.015}},
-                                       16,
-                                       smallSettings()});
+        auto found = measureByAll(context, {b.description(),
+                                            {},
+                                            expected,
+                                            1.0,
+                                            lower ? "radiance of plate 1" : "radiance of plate 2",
+                                            {{Method::Path, 16, 0.0, 0.03}, {Method::Photon, 4, 0.015, 0.03}},
+                                            16,
+                                            settings});
         all.insert(all.end(), found.begin(), found.end());
     }
     return all;
@@ -133,14 +144,14 @@ std::vector<Finding> concentricSpheres(const CheckContext& context) {
         const double f21 = a1 / a2;
         // L1 = 1 + rho1 L2, L2 = rho2 (F21 L1 + F22 L2)
         const double l2 = rho2 * f21 / (1.0 - rho2 * (1.0 - f21) - rho1 * rho2 * f21);
-        auto found = measure(context, {b.description(),
-                                       {},
-                                       inner ? 1.0 + rho1 * l2 : l2,
-                                       1.0,
-                                       inner ? "radiance of the inner" : "radiance of the outer",
-                                       {{Method::Path, 128, 0.0}, {Method::Photon, 32, 0.015}},
-                                       16,
-                                       smallSettings()});
+        auto found = measureByAll(context, {b.description(),
+                                            {},
+                                            inner ? 1.0 + rho1 * l2 : l2,
+                                            1.0,
+                                            inner ? "radiance of the inner" : "radiance of the outer",
+                                            {{Method::Path, 32, 0.0}, {Method::Photon, 8, 0.015, 0.03}},
+                                            16,
+                                            furnaceSettings()});
         all.insert(all.end(), found.begin(), found.end());
     }
     return all;

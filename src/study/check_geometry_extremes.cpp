@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <pellucid/math/constants.h>
+#include <pellucid/study/record_json.h>
 
 #include "check_cases.h"
 #include "check_formulas.h"
@@ -33,7 +34,7 @@ void append(std::vector<Finding>& to, std::vector<Finding> from) { to.insert(to.
                              expected,
                              kPiD / kRho,
                              quantity,
-                             {{Method::Path, 8, 0.0}, {Method::Photon, 4, 0.005}},
+                             {{Method::Path, 2, 0.0}, {Method::Photon, 4, 0.005}},
                              16,
                              smallSettings()});
 }
@@ -91,7 +92,7 @@ std::vector<Finding> coincidentGlass(const CheckContext& context) {
                                       slabTransmittance(std::cos(angle), 1.5),
                                       1.0,
                                       fmt::format("transmittance at {:.0f} deg", degrees),
-                                      {{Method::Path, 64, 0.0}, {Method::Photon, 32, 0.0, 0.03}},
+                                      {{Method::Path, 16, 0.0}, {Method::Photon, 32, 0.0, 0.03}},
                                       16,
                                       smallSettings()}));
     }
@@ -111,7 +112,7 @@ std::vector<Finding> thinGap(const CheckContext& context) {
                              (1.0 - r) / (1.0 + 3.0 * r),
                              1.0,
                              "transmittance of two slabs",
-                             {{Method::Path, 64, 0.0}, {Method::Photon, 32, 0.0, 0.03}},
+                             {{Method::Path, 16, 0.0}, {Method::Photon, 32, 0.0, 0.03}},
                              16,
                              smallSettings()});
 }
@@ -125,11 +126,11 @@ std::vector<Finding> brokenGlass(const CheckContext& context) {
         b.perspective({2, -3, 2}, glm::dvec3(0.0), 0.7);
         const Scene scene = makeScene(context, b.description(), sky);
         std::vector<Finding> found;
-        for (const Method method : {Method::Path, Method::Photon}) {
+        for (const Method method : {Method::Path, Method::Photon, Method::Bdpt, Method::Reference}) {
             const RenderResult r = renderOnce(context, scene, {method, 4}, smallSettings(), 16, context.seed);
             const double mean = meanOf(r.image);
             found.push_back(exact(
-                what + (method == Method::Path ? ", path" : ", photon"), 1.0,
+                what + ", " + methodName(method), 1.0,
                 std::isfinite(mean) && mean > 0.1 && mean < 2.3 && r.record.nonfinite.count == 0 ? 1.0 : 0.0, 0.0));
         }
         return found;
@@ -166,7 +167,7 @@ std::vector<Finding> coplanarFaces(const CheckContext& context) {
                              0.4,
                              kPiD / irradiance,
                              "reflectance seen, 0.2 to 0.6",
-                             {{Method::Path, 8, 0.5, 0.3}, {Method::Photon, 4, 0.5, 0.3}},
+                             {{Method::Path, 2, 0.5, 0.3}, {Method::Photon, 4, 0.5, 0.3}},
                              16,
                              smallSettings()});
 }

@@ -40,14 +40,15 @@ void append(std::vector<Finding>& to, std::vector<Finding> from) { to.insert(to.
 [[nodiscard]] std::vector<Finding> irradiance(const CheckContext& context, SceneBuilder& b, double expected,
                                               const std::string& quantity, double resolution = 0.02,
                                               std::uint32_t photonSamples = 16) {
-    return measure(context, {b.description(),
-                             {},
-                             expected,
-                             kPiD / kRho,
-                             quantity,
-                             {{Method::Path, 32, 0.0, resolution}, {Method::Photon, photonSamples, 0.005, resolution}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context,
+                        {b.description(),
+                         {},
+                         expected,
+                         kPiD / kRho,
+                         quantity,
+                         {{Method::Path, 8, 0.0, resolution}, {Method::Photon, photonSamples, 0.005, resolution}},
+                         16,
+                         smallSettings()});
 }
 
 std::vector<Finding> zeroArea(const CheckContext& context) {
@@ -104,6 +105,22 @@ std::vector<Finding> touchingWall(const CheckContext& context) {
                       "irradiance");
 }
 
+/// A lamp whose edge lies on a wall: what it makes of the wall right beside that edge.
+std::vector<Finding> onTheWall(const CheckContext& context) {
+    const glm::dvec3 out(1, 0, 0), middle(0, 0, 0.85);
+    const std::array<glm::dvec3, 4> corners{glm::dvec3(0, -0.3, 1), glm::dvec3(0, 0.3, 1), glm::dvec3(0.5, 0.3, 1),
+                                            glm::dvec3(0.5, -0.3, 1)};
+    SceneBuilder b;
+    b.square({0, 0, 1}, out, 1.0, lambert(static_cast<float>(kRho)));
+    b.quad(corners[0], corners[1] - corners[0], corners[3] - corners[0], lamp(5.0F));
+    b.view(middle, out, kPatch, 0.3);
+    const double expected =
+        5.0 * meanOverSquare([&](double u, double v) {
+            return polygonIrradiance(middle + kPatch * glm::dvec3(0, u - 0.5, v - 0.5), out, corners);
+        });
+    return irradiance(context, b, expected, "irradiance of the wall");
+}
+
 std::vector<Finding> tenThousandLights(const CheckContext& context) {
     constexpr int kSide = 100;
     SceneBuilder b = floorScene(2.0);
@@ -127,14 +144,14 @@ std::vector<Finding> tenThousandLights(const CheckContext& context) {
     SceneBuilder b;
     b.square(glm::dvec3(0.0), {0, 1, 0}, 0.5, lambert(static_cast<float>(kRho)));
     b.view(glm::dvec3(0.0), {0, 1, 0}, 0.5, 1.0);
-    return measure(context, {b.description(),
-                             std::move(sky),
-                             expected,
-                             kPiD / kRho,
-                             quantity,
-                             {{Method::Path, 32, 0.0, 0.02}, {Method::Photon, 16, 0.005, 0.03}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context, {b.description(),
+                                  std::move(sky),
+                                  expected,
+                                  kPiD / kRho,
+                                  quantity,
+                                  {{Method::Path, 8, 0.0, 0.02}, {Method::Photon, 16, 0.005, 0.03}},
+                                  16,
+                                  smallSettings()});
 }
 
 /// One texel of 1e6 among others of 1e-3; the bilinear look-up makes it a pyramid of two texels' width.
@@ -191,6 +208,8 @@ void addLampExtremes(Cases& cases) {
         tinyBesideHuge);
     add("extreme-lamp-touching-ceiling", "a lamp 1e-5 under a ceiling, behind the camera", "[Lambert1760]", false,
         touchingWall);
+    add("extreme-lamp-on-a-wall", "a lamp whose edge lies on the wall that it lights", "[Lambert1760]", true,
+        onTheWall);
     add("extreme-ten-thousand-lights", "sum I cos / d^2 over 10,000 point lights", "inverse square law", true,
         tenThousandLights);
     add("extreme-burning-texel", "one texel nine orders brighter than the rest", "integral of the bilinear map", true,

@@ -31,7 +31,7 @@ constexpr double kRho = 0.5, kPatch = 0.2;
                                   expected,
                                   kPiD / kRho,
                                   "irradiance",
-                                  {{Method::Path, 64, 0.0, 0.012}, {Method::Photon, 64, 0.005, 0.02}},
+                                  {{Method::Path, 16, 0.0, 0.012}, {Method::Photon, 64, 0.005, 0.02}},
                                   16,
                                   settings});
 }

@@ -108,14 +108,15 @@ std::vector<Finding> ballLens(const CheckContext& context) {
     b.view(middle, kUp, patch, 0.5);
     const double expected = meanOverSquare(
         [&](double u, double v) { return irradianceAt(std::hypot(middle.x + patch * (u - 0.5), patch * (v - 0.5))); });
-    return measure(context, {b.description(),
-                             {},
-                             expected,
-                             kPiD / kRho,
-                             "irradiance",
-                             {{Method::Photon, 32, 0.015, 0.12, "caustic"}, {Method::Light, 32, 0.01, 0.12, "caustic"}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context,
+                        {b.description(),
+                         {},
+                         expected,
+                         kPiD / kRho,
+                         "irradiance",
+                         {{Method::Photon, 4, 0.015, 0.12, "caustic"}, {Method::Light, 32, 0.01, 0.12, "caustic"}},
+                         16,
+                         smallSettings()});
 }
 
 /// After one inner reflection rays crowd at the least deviation, 180 + 2i - 4r at cos i = sqrt((n^2 - 1) / 3). They are
@@ -170,28 +171,30 @@ std::vector<Finding> lampInGlass(const CheckContext& context) {
     const double expected = meanOverSquare([&](double u, double v) {
         return pointIrradiance({patch * (u - 0.5), patch * (v - 0.5), 0}, kUp, centre, flux / (4.0 * kPiD));
     });
-    auto all = measure(context, {scene.description(),
-                                 {},
-                                 expected,
-                                 kPiD / kRho,
-                                 "irradiance of the floor",
-                                 {{Method::Path, 256, 0.003, 0.1, "caustic"},
-                                  {Method::Photon, 16, 0.01, 0.05, "caustic"},
-                                  {Method::Light, 16, 0.003, 0.05, "caustic"}},
-                                 16,
-                                 smallSettings()});
+    auto all = measureByAll(context, {scene.description(),
+                                      {},
+                                      expected,
+                                      kPiD / kRho,
+                                      "irradiance of the floor",
+                                      {{Method::Path, 64, 0.003, 0.1, "caustic"},
+                                       {Method::Photon, 3, 0.01, 0.05, "caustic"},
+                                       {Method::Light, 4, 0.003, 0.05, "caustic"},
+                                       {Method::Bdpt, 32, 0.003, 0.15, "caustic"},
+                                       {Method::Reference, 1, 0.003, 0.15, "caustic"}},
+                                      16,
+                                      smallSettings()});
     SceneBuilder seen;
     seen.sphere(centre, 0.1, 24, lamp(static_cast<float>(radiance)), false);
     seen.sphere(centre, b, 96, glass(static_cast<float>(n)), true);
     seen.view(centre + b * kUp, kUp, 0.02, 0.5);
-    auto radial = measure(context, {seen.description(),
-                                    {},
-                                    radiance * (1.0 - fresnel(1.0, n)) / (n * n),
-                                    1.0,
-                                    "radiance of the lamp: L (1 - R) / n^2",
-                                    {{Method::Path, 16, 0.001}, {Method::Photon, 8, 0.001}},
-                                    16,
-                                    smallSettings()});
+    auto radial = measureByAll(context, {seen.description(),
+                                         {},
+                                         radiance * (1.0 - fresnel(1.0, n)) / (n * n),
+                                         1.0,
+                                         "radiance of the lamp: L (1 - R) / n^2",
+                                         {{Method::Path, 4, 0.001}, {Method::Photon, 8, 0.001}},
+                                         16,
+                                         smallSettings()});
     all.insert(all.end(), radial.begin(), radial.end());
     return all;
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <pellucid/math/constants.h>
+#include <pellucid/study/record_json.h>
 
 #include "check_cases.h"
 #include "check_formulas.h"
@@ -32,7 +33,7 @@ void append(std::vector<Finding>& to, std::vector<Finding> from) { to.insert(to.
                              expected,
                              1.0,
                              quantity,
-                             {{Method::Path, 16, allowance, 0.03}, {Method::Photon, 8, allowance, 0.05}},
+                             {{Method::Path, 4, allowance, 0.03}, {Method::Photon, 8, allowance, 0.05}},
                              16,
                              smallSettings()});
 }
@@ -64,14 +65,17 @@ std::vector<Finding> albedo999(const CheckContext& context) {
     b.box(glm::dvec3(-1.0), glm::dvec3(1.0), lambert(0.999F, 1.0F), true);
     b.perspective({0.1, -0.2, 0.3}, {0.9, 0.5, -0.4}, 1.6);
     const double rho = static_cast<double>(0.999F);
+    Settings settings = smallSettings();
+    settings.globalPhotons = 600;  // of a thousand bounces each
+    settings.gatherRays = 16;
     return measure(context, {b.description(),
                              {},
                              1.0 / (1.0 - rho),
                              1.0,
                              "radiance at rho = 0.999",
-                             {{Method::Path, 32, 0.0, 0.1}},
+                             {{Method::Path, 8, 0.0, 0.1}, {Method::Photon, 1, 0.02, 0.2}},
                              8,
-                             smallSettings()});
+                             settings});
 }
 
 /// No steady state exists: the render must end and stay finite all the same.
@@ -85,14 +89,14 @@ std::vector<Finding> albedo1(const CheckContext& context) {
     settings.globalPhotons = 100;
     settings.gatherRays = 9;
     std::vector<Finding> all;
-    for (const Method method : {Method::Path, Method::Photon}) {
+    // (Bidirectional paths end, too, but join thousands of vertices with thousands: minutes.)
+    for (const Method method : {Method::Path, Method::Photon, Method::Reference}) {
         const RenderResult r = renderOnce(context, scene, {method, 2}, settings, 4, context.seed);
         const bool told = std::ranges::any_of(r.record.blindSpots,
                                               [](const std::string& text) { return text.starts_with("endless"); });
-        all.push_back(exact(method == Method::Path ? "says that there is no answer, path" : "the same, photon", 1.0,
-                            told ? 1.0 : 0.0, 0.0));
+        all.push_back(exact("says that there is no answer, " + methodName(method), 1.0, told ? 1.0 : 0.0, 0.0));
         const double mean = meanOf(r.image);
-        all.push_back(exact(method == Method::Path ? "ends finite and lit, path" : "ends finite and lit, photon", 1.0,
+        all.push_back(exact("ends finite and lit, " + methodName(method), 1.0,
                             std::isfinite(mean) && mean > 0.0 && r.record.nonfinite.count == 0 ? 1.0 : 0.0, 0.0));
     }
     return all;
@@ -141,7 +145,7 @@ std::vector<Finding> cameraInGlass(const CheckContext& context) {
                              2.25,
                              1.0,
                              "radiance n^2",
-                             {{Method::Path, 32, 0.0}, {Method::Photon, 8, 0.0}},
+                             {{Method::Path, 8, 0.0}, {Method::Photon, 8, 0.0}},
                              16,
                              smallSettings()});
 }
@@ -153,9 +157,14 @@ std::vector<Finding> endlessMirrors(const CheckContext& context) {
     b.square({0, 0, 1}, {0, 0, -1}, 1.0, mirror(1.0F));
     b.point({0.3, 0.2, 0.5}, 1.0);
     b.view(glm::dvec3(0.0), {0, 0, 1}, 1.0, 0.5);
-    return measure(
-        context,
-        {b.description(), {}, 0.0, 1.0, "radiance", {{Method::Path, 4}, {Method::Photon, 4}}, 8, smallSettings()});
+    return measure(context, {b.description(),
+                             {},
+                             0.0,
+                             1.0,
+                             "radiance",
+                             {{Method::Path, 1}, {Method::Photon, 4}, {Method::Bdpt, 1}, {Method::Reference, 1}},
+                             4,
+                             smallSettings()});
 }
 
 /// Light at 0.05 degrees over a floor.
@@ -170,7 +179,7 @@ std::vector<Finding> grazing(const CheckContext& context) {
                              1000.0 * std::sin(angle),
                              kPiD / rho,
                              "irradiance E0 sin(0.05 deg)",
-                             {{Method::Path, 4, 1e-3}, {Method::Photon, 4, 1e-3}},
+                             {{Method::Path, 1, 1e-3}, {Method::Photon, 4, 1e-3}},
                              16,
                              smallSettings()});
 }

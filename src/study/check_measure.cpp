@@ -1,12 +1,13 @@
 #include "check_measure.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include <pellucid/math/hash.h>
+#include <pellucid/study/record_json.h>
+#include <pellucid/study/statistics.h>
 #include <pellucid/transport/emission_guide.h>
 #include <pellucid/transport/photon_trace.h>
 
@@ -14,24 +15,14 @@ namespace pellucid::check {
 
 namespace {
 
-[[nodiscard]] std::string methodName(Method method) {
-    switch (method) {
-        case Method::Photon:
-            return "photon";
-        case Method::Path:
-            return "path";
-        case Method::Light:
-            return "light";
-        case Method::Reference:
-            return "reference";
-        case Method::Bdpt:
-            return "bdpt";
-    }
-    return "?";
-}
-
 [[nodiscard]] std::uint64_t seedOf(const CheckContext& context, int repetition) {
     return hashCombine(context.seed, static_cast<std::uint64_t>(repetition));
+}
+
+/// Whether a render begins with photons: a pilot, maps, a cache.
+[[nodiscard]] bool prepares(Method method, const Scene& scene) noexcept {
+    const bool lightPaths = method == Method::Light || method == Method::Reference;
+    return method == Method::Photon || (lightPaths && (scene.lobeKinds() & kSpecular) != kNoLobe);
 }
 
 }  // namespace
@@ -41,13 +32,14 @@ Estimate estimate(std::span<const double> values) {
     double mean = 0.0, square = 0.0;
     for (const double v : values) mean += v / n;
     for (const double v : values) square += (v - mean) * (v - mean);
-    return {mean, kStudent * std::sqrt(square / (n * (n - 1.0)))};
+    const double student = studentQuantile(1.0 - 0.5 * kStrayLevel, static_cast<int>(values.size()) - 1);
+    return {mean, student * std::sqrt(square / (n * (n - 1.0)))};
 }
 
 Finding measureSeeds(const CheckContext& context, std::string quantity, double expected, double allowance,
-                     double resolution, const std::function<double(std::uint64_t)>& once) {
-    std::array<double, kSeeds> values{};
-    for (int i = 0; i < kSeeds; ++i) values[static_cast<std::size_t>(i)] = once(seedOf(context, i));
+                     double resolution, const std::function<double(std::uint64_t)>& once, int seeds) {
+    std::vector<double> values;
+    for (int i = 0; i < seeds; ++i) values.push_back(once(seedOf(context, i)));
     const Estimate e = estimate(values);
     const double unit = expected != 0.0 ? std::fabs(expected) : 1.0;
     return {std::move(quantity), expected, e.mean, e.interval, (allowance + kFloatAllowance) * unit, resolution * unit};
@@ -95,16 +87,16 @@ std::vector<Finding> measure(const CheckContext& context, Rendered what) {
     double lost = 0.0;  // of the energy of a photon pass
     for (const By& by : what.by) {
         const std::string layer = by.layer.empty() ? "" : ", " + by.layer;
+        const auto once = [&](std::uint64_t seed) {
+            const RenderResult result = renderOnce(context, scene, by, what.settings, what.size, seed);
+            nonfinite += result.record.nonfinite.count;
+            for (const StageRecord& s : result.record.stages)
+                if (s.photonPasses > 0) lost = std::max(lost, std::fabs(s.energy.residual()));
+            return meanOf(result.image, by.layer) * what.toQuantity;
+        };
         findings.push_back(measureSeeds(context, fmt::format("{}, {}{}", what.quantity, methodName(by.method), layer),
-                                        what.expected, by.bias, by.resolution, [&](std::uint64_t seed) {
-                                            const RenderResult result =
-                                                renderOnce(context, scene, by, what.settings, what.size, seed);
-                                            nonfinite += result.record.nonfinite.count;
-                                            for (const StageRecord& s : result.record.stages)
-                                                if (s.photonPasses > 0)
-                                                    lost = std::max(lost, std::fabs(s.energy.residual()));
-                                            return meanOf(result.image, by.layer) * what.toQuantity;
-                                        }));
+                                        what.expected, by.bias, by.resolution, once,
+                                        prepares(by.method, scene) ? kSeeds : kManySeeds));
     }
     if (nonfinite > 0)
         findings.push_back(exact("samples that are not finite", 0.0, static_cast<double>(nonfinite), 0.0));
@@ -115,14 +107,19 @@ std::vector<Finding> measure(const CheckContext& context, Rendered what) {
 std::vector<Finding> measureByAll(const CheckContext& context, Rendered what) {
     const auto unbiased = std::ranges::find_if(
         what.by, [](const By& by) { return by.method == Method::Path || by.method == Method::Light; });
-    if (unbiased != what.by.end()) {
-        By twin = *unbiased;
-        twin.samples = std::max(4U, twin.samples / 4);
-        twin.resolution = std::max(0.06, 3.0 * twin.resolution);
-        for (const Method method : {Method::Bdpt, Method::Reference}) {
-            twin.method = method;
-            what.by.push_back(twin);
+    if (unbiased == what.by.end()) return measure(context, std::move(what));
+    const By model = *unbiased;
+    for (const Method method : {Method::Bdpt, Method::Reference}) {
+        if (std::ranges::any_of(what.by, [method](const By& by) { return by.method == method; })) continue;
+        By twin = model;
+        twin.method = method;
+        twin.samples = std::max(1U, model.samples / 4);
+        twin.resolution = std::max(0.06, 3.0 * model.resolution);
+        if (model.method == Method::Light && method == Method::Bdpt) {
+            twin.samples = 128;
+            twin.resolution = std::max(0.2, twin.resolution);
         }
+        what.by.push_back(std::move(twin));
     }
     return measure(context, std::move(what));
 }

@@ -138,7 +138,7 @@ std::vector<Finding> recordsInCorners(const CheckContext& context) {
                                  2.0,
                                  1.0,
                                  quantity,
-                                 {{Method::Path, 64, 0.0}, {Method::Photon, 8, 0.02, 0.05}},
+                                 {{Method::Path, 16, 0.0}, {Method::Photon, 8, 0.02, 0.05}},
                                  16,
                                  smallSettings()});
     };

@@ -1,4 +1,5 @@
 // Extremes of size and place: the same scene in other units, or far from the origin, is the same picture.
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -24,15 +25,27 @@ namespace {
     return b.description();
 }
 
-struct Pictures {
-    Image path, photon;
+/// By every method that shows all of the image.
+struct Taken {
+    Method method;
+    std::uint32_t samples;
+    const char* name;
 };
+constexpr std::array kTaken{Taken{Method::Path, 16, "path"}, Taken{Method::Photon, 4, "photon"},
+                            Taken{Method::Bdpt, 8, "bdpt"}, Taken{Method::Reference, 4, "reference"}};
+using Pictures = std::array<Image, kTaken.size()>;
+
 [[nodiscard]] Pictures pictures(const CheckContext& context, SceneDescription description, std::uint64_t seed) {
     const Scene scene = makeScene(context, std::move(description));
     Settings settings = smallSettings();
     settings.gatherRays = 128;
-    return {renderOnce(context, scene, {Method::Path, 16}, settings, 24, seed).image,
-            renderOnce(context, scene, {Method::Photon, 4}, settings, 24, seed).image};
+    Pictures all;
+    for (std::size_t m = 0; m < all.size(); ++m) {
+        Settings own = settings;
+        if (kTaken[m].method == Method::Reference) own.causticPhotons = 2000;  // light paths, here
+        all[m] = renderOnce(context, scene, {kTaken[m].method, kTaken[m].samples}, own, 24, seed).image;
+    }
+    return all;
 }
 
 [[nodiscard]] double differentBits(const Image& a, const Image& b) {
@@ -49,10 +62,9 @@ std::vector<Finding> powersOfTwo(const CheckContext& context) {
     for (const int exponent : {-20, -10, 10, 23}) {
         const Pictures scaled =
             pictures(context, transformed(mixedScene(), std::ldexp(1.0, exponent), glm::dvec3(0.0)), context.seed);
-        all.push_back(exact(fmt::format("values that differ at 2^{}, path", exponent), 0.0,
-                            differentBits(plain.path, scaled.path), 0.0));
-        all.push_back(exact(fmt::format("values that differ at 2^{}, photon", exponent), 0.0,
-                            differentBits(plain.photon, scaled.photon), 0.0));
+        for (std::size_t m = 0; m < plain.size(); ++m)
+            all.push_back(exact(fmt::format("values that differ at 2^{}, {}", exponent, kTaken[m].name), 0.0,
+                                differentBits(plain[m], scaled[m]), 0.0));
     }
     return all;
 }
@@ -60,16 +72,17 @@ std::vector<Finding> powersOfTwo(const CheckContext& context) {
 /// Other factors round, and rounding sends a path behind glass elsewhere: the means must agree, paired by seed.
 [[nodiscard]] std::vector<Finding> sameMeans(const CheckContext& context, const std::string& what,
                                              const std::function<SceneDescription()>& changed) {
-    std::vector<double> path, photon;
-    for (int i = 0; i < 3; ++i) {
+    constexpr int kPairs = 3;
+    std::array<double, kTaken.size()> ratio{};
+    for (int i = 0; i < kPairs; ++i) {
         const std::uint64_t seed = context.seed + static_cast<std::uint64_t>(i);
         const Pictures a = pictures(context, mixedScene(), seed), b = pictures(context, changed(), seed);
-        path.push_back(meanOf(b.path) / meanOf(a.path));
-        photon.push_back(meanOf(b.photon) / meanOf(a.photon));
+        for (std::size_t m = 0; m < ratio.size(); ++m) ratio[m] += meanOf(b[m]) / meanOf(a[m]) / kPairs;
     }
-    const auto mean = [](const std::vector<double>& v) { return (v[0] + v[1] + v[2]) / 3.0; };
-    return {exact(what + ": ratio of the means, path", 1.0, mean(path), 0.01),
-            exact(what + ": ratio of the means, photon", 1.0, mean(photon), 0.01)};
+    std::vector<Finding> all;
+    for (std::size_t m = 0; m < ratio.size(); ++m)
+        all.push_back(exact(fmt::format("{}: ratio of the means, {}", what, kTaken[m].name), 1.0, ratio[m], 0.01));
+    return all;
 }
 
 std::vector<Finding> otherScales(const CheckContext& context) {
@@ -97,10 +110,9 @@ std::vector<Finding> anyThreads(const CheckContext& context) {
     for (const int threads : {2, 3}) {
         const Workers workers(threads);
         const Pictures many = pictures({workers, context.seed}, mixedScene(), context.seed);
-        all.push_back(exact(fmt::format("values that differ with {} threads, path", threads), 0.0,
-                            differentBits(one.path, many.path), 0.0));
-        all.push_back(exact(fmt::format("values that differ with {} threads, photon", threads), 0.0,
-                            differentBits(one.photon, many.photon), 0.0));
+        for (std::size_t m = 0; m < one.size(); ++m)
+            all.push_back(exact(fmt::format("values that differ with {} threads, {}", threads, kTaken[m].name), 0.0,
+                                differentBits(one[m], many[m]), 0.0));
     }
     return all;
 }

@@ -71,7 +71,7 @@ std::vector<Finding> seenInMirror(const CheckContext& context) {
          expected,
          kPiD / kRho,
          "irradiance",
-         {{Method::Path, 512, 0.0, 0.2}, {Method::Photon, 16, 0.01, 0.06}, {Method::Light, 32, 0.0, 0.2, "caustic"}},
+         {{Method::Path, 128, 0.0, 0.2}, {Method::Photon, 16, 0.01, 0.06}, {Method::Light, 16, 0.0, 0.2, "caustic"}},
          16,
          smallSettings()});
 }
@@ -88,7 +88,7 @@ std::vector<Finding> grazingTotalReflection(const CheckContext& context) {
                              slabTransmittance(std::cos(angle), 1.5),
                              1.0,
                              "transmittance",
-                             {{Method::Path, 64, 0.0}, {Method::Photon, 32, 0.0, 0.03}},
+                             {{Method::Path, 16, 0.0}, {Method::Photon, 32, 0.0, 0.03}},
                              16,
                              smallSettings()});
 }

@@ -51,7 +51,7 @@ std::vector<Finding> millionInstances(const CheckContext& context) {
                              expected,
                              kPiD / kRho,
                              "irradiance",
-                             {{Method::Path, 8, 0.0}, {Method::Photon, 2, 0.005}},
+                             {{Method::Path, 2, 0.0}, {Method::Photon, 2, 0.005}},
                              16,
                              smallSettings()});
 }
@@ -78,7 +78,7 @@ std::vector<Finding> hugeEnvironment(const CheckContext& context) {
                              kPiD + 2.0 * kPiD / 3.0 * a.y,
                              kPiD / kRho,
                              "irradiance",
-                             {{Method::Path, 32, 0.0, 0.02}, {Method::Photon, 16, 0.005, 0.03}},
+                             {{Method::Path, 8, 0.0, 0.02}, {Method::Photon, 16, 0.005, 0.03}},
                              16,
                              smallSettings()});
 }

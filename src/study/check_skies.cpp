@@ -40,14 +40,14 @@ std::vector<Finding> cornerEmits(const CheckContext& context) {
     std::vector<Finding> all;
     for (const double x : {0.1, 0.5, 2.0}) {
         SceneBuilder b = corner(x, lamp(1.0F));
-        auto found = measure(context, {b.description(),
-                                       {},
-                                       wallFactorOver(x),
-                                       1.0 / kRho,
-                                       fmt::format("form factor at {} h", x),
-                                       {{Method::Path, 128, 0.0}, {Method::Photon, 32, 0.005, 0.03}},
-                                       16,
-                                       smallSettings()});
+        auto found = measureByAll(context, {b.description(),
+                                            {},
+                                            wallFactorOver(x),
+                                            1.0 / kRho,
+                                            fmt::format("form factor at {} h", x),
+                                            {{Method::Path, 32, 0.0}, {Method::Photon, 32, 0.005, 0.03}},
+                                            16,
+                                            smallSettings()});
         all.insert(all.end(), found.begin(), found.end());
     }
     return all;
@@ -61,15 +61,15 @@ std::vector<Finding> cornerLit(const CheckContext& context) {
         b.sun({-1, 0, 0}, 1.0);
         Settings settings = smallSettings();
         settings.gatherRays = 4096;  // the patch has room for one or two records
-        auto found =
-            measure(context, {b.description(),
-                              {},
-                              wallFactorOver(x),
-                              kPiD / (kRho * 0.8),
-                              fmt::format("form factor at {} h", x),
-                              {{Method::Path, 256, 0.0, 0.03, "indirect"}, {Method::Photon, 4, 0.02, 0.03, "indirect"}},
-                              16,
-                              settings});
+        auto found = measureByAll(
+            context, {b.description(),
+                      {},
+                      wallFactorOver(x),
+                      kPiD / (kRho * 0.8),
+                      fmt::format("form factor at {} h", x),
+                      {{Method::Path, 64, 0.0, 0.04, "indirect"}, {Method::Photon, 4, 0.02, 0.03, "indirect"}},
+                      16,
+                      settings});
         all.insert(all.end(), found.begin(), found.end());
     }
     return all;
@@ -120,14 +120,14 @@ std::vector<Finding> gradients(const CheckContext& context) {
     SceneBuilder b;
     b.square(glm::dvec3(0.0), normal, 0.5, lambert(static_cast<float>(kRho)));
     b.view(glm::dvec3(0.0), normal, 0.5, 1.0);
-    return measure(context, {b.description(),
-                             environmentMap(512, 256, sky),
-                             expected,
-                             kPiD / kRho,
-                             quantity,
-                             {{Method::Path, 128, 0.0, 0.02}, {Method::Photon, 64, 0.005, 0.02}},
-                             16,
-                             smallSettings()});
+    return measureByAll(context, {b.description(),
+                                  environmentMap(512, 256, sky),
+                                  expected,
+                                  kPiD / kRho,
+                                  quantity,
+                                  {{Method::Path, 32, 0.0, 0.02}, {Method::Photon, 64, 0.005, 0.02}},
+                                  16,
+                                  smallSettings()});
 }
 void append(std::vector<Finding>& to, std::vector<Finding> from) { to.insert(to.end(), from.begin(), from.end()); }
 

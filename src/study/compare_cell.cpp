@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -25,20 +24,13 @@ using Json = nlohmann::ordered_json;
             json.at("reference_noise").get<double>()};
 }
 
-/// False when there is no such file or it is of other images.
-[[nodiscard]] bool readCell(const std::filesystem::path& file, const std::string& key, CellProducts& cell) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return false;
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const Json json = Json::parse(text, nullptr, false);
-    try {
-        if (json.is_discarded() || json.at("key").get<std::string>() != key) return false;
-        cell = {productsFrom(json.at("relative")), productsFrom(json.at("absolute")), {}};
+/// Empty when there is no such file or it is of other images.
+[[nodiscard]] std::optional<CellProducts> readCell(const std::filesystem::path& file, const std::string& key) {
+    return readKeyed<Json>(file, key, std::optional<CellProducts>(), [](const Json& json) {
+        CellProducts cell{productsFrom(json.at("relative")), productsFrom(json.at("absolute")), {}};
         for (const auto& [name, value] : json.at("classes").items()) cell.classes[name] = productsFrom(value);
-        return true;
-    } catch (const nlohmann::json::exception&) {
-        return false;
-    }
+        return std::optional(cell);
+    });
 }
 
 void writeCell(const std::filesystem::path& file, const std::string& key, const CellProducts& cell) {
@@ -77,8 +69,9 @@ CellProducts cellProducts(const std::vector<const StoredRun*>& runs, const Compa
     std::string key = "4 " + reference.hash;
     for (const StoredRun* run : runs) key += " " + run->imageHash;
     const std::filesystem::path folder = store.folder() / "cells", file = folder / (hashText(key) + ".json");
-    CellProducts cell;
-    if (!readCell(file, key, cell)) {
+    const std::optional<CellProducts> stored = readCell(file, key);
+    CellProducts cell = stored.value_or(CellProducts{});
+    if (!stored) {
         std::vector<Image> images(runs.size());
         workers.forEach(runs.size(), 1, [&](std::size_t i) { images[i] = store.readImage(*runs[i]); });
         std::vector<std::string> names{"", ""};  // the whole image: relative and absolute; then the classes

@@ -1,8 +1,6 @@
 // The reference of a comparison: given as a file, or made until it is good enough.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -42,17 +40,10 @@ struct ReferenceState {
 [[nodiscard]] ReferenceState readState(const std::filesystem::path& file, const std::string& key) {
     ReferenceState fresh;
     fresh.key = key;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return fresh;
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const Json json = Json::parse(text, nullptr, false);
-    try {
-        if (json.is_discarded() || json.at("key").get<std::string>() != key) return fresh;
+    return readKeyed<Json>(file, key, fresh, [&key](const Json& json) -> ReferenceState {
         return {key, json.at("seconds").get<double>(), json.at("error_estimate").get<double>(),
                 json.at("blind_spots").get<std::vector<std::string>>()};
-    } catch (const nlohmann::json::exception&) {
-        return fresh;
-    }
+    });
 }
 
 void writeState(const std::filesystem::path& file, const ReferenceState& state) {

@@ -5,6 +5,8 @@
 #include <pellucid/render/caustic_links.h>
 #include <pellucid/study/text_table.h>
 
+#include "study_json.h"
+
 namespace pellucid {
 namespace {
 
@@ -15,13 +17,6 @@ using Json = nlohmann::ordered_json;
     for (const Parameter& row : parameters())
         json[std::string(row.name)] =
             std::visit([&settings](auto member) { return Json(settings.*member); }, row.member);
-    return json;
-}
-
-[[nodiscard]] Json decisionsJson(const std::vector<Decision>& decisions) {
-    Json json = Json::array();
-    for (const Decision& d : decisions)
-        json.push_back({{"name", d.name}, {"choice", d.choice}, {"reason", d.reason}, {"overridden", d.overridden}});
     return json;
 }
 
@@ -48,16 +43,9 @@ constexpr std::size_t kMostLinks = 256, kMostLinkRows = 12;
 }
 
 [[nodiscard]] Json stagesJson(const std::vector<StageRecord>& stages) {
-    Json json = Json::array();
-    for (const StageRecord& s : stages) {
-        json.push_back({{"name", s.name},
-                        {"seconds", s.seconds},
-                        {"rays", s.rays},
-                        {"photons_emitted", s.photonsEmitted},
-                        {"photons_stored", s.photonsStored},
-                        {"records", s.records}});
-        if (s.photonPasses > 0) json.back()["energy"] = energyJson(s.energy);
-    }
+    Json json = stagesAs<Json>(stages);
+    for (std::size_t i = 0; i < stages.size(); ++i)
+        if (stages[i].photonPasses > 0) json[i]["energy"] = energyJson(stages[i].energy);
     return json;
 }
 
@@ -73,7 +61,7 @@ constexpr std::size_t kMostLinks = 256, kMostLinkRows = 12;
     json["seed"] = context.seed;
     json["threads"] = record.threads;
     json["settings"] = settingsJson(record.resolved);
-    json["plan"] = decisionsJson(record.decisions);
+    json["plan"] = decisionsAs<Json>(record.decisions);
     json["caustics"] = linksJson(record.causticLinks);
     json["blind_spots"] = record.blindSpots;
     json["stages"] = stagesJson(record.stages);

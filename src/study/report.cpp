@@ -1,13 +1,11 @@
 #include <pellucid/study/report.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
-#include <pellucid/study/image_pair.h>
-
+#include "html_page.h"
 #include "report_parts.h"
 #include "report_pixels.h"
 #include "study_json.h"
@@ -16,32 +14,6 @@ namespace pellucid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Inside of <script> no "</script" and no "<!--" may stand; in JSON every "<" can be written as an escape.
-[[nodiscard]] std::string scriptSafe(std::string_view json) {
-    std::string text;
-    for (const char c : json) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-    return text;
-}
-
-[[nodiscard]] std::string htmlSafe(std::string_view raw) {
-    std::string text;
-    for (const char c : raw) text += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-    return text;
-}
-
-void replaceMark(std::string& page, std::string_view mark, std::string_view text) {
-    for (std::size_t place = page.find(mark); place != std::string::npos; place = page.find(mark, place + text.size()))
-        page.replace(place, mark.size(), text);
-}
-
-[[nodiscard]] Image colourOf(const Image& image) {
-    const std::array<int, 3> channels = colourChannels(image);
-    Image colour(image.width(), image.height(), {"R", "G", "B"});
-    for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel)
-        for (int c = 0; c < 3; ++c) colour.at(pixel, c) = image.at(pixel, channels[static_cast<std::size_t>(c)]);
-    return colour;
-}
 
 /// What the page holds: maps are halves, and half the size where space is short.
 struct Choice {
@@ -130,15 +102,12 @@ std::string reportHtml(const ReportData& data) {
                                          {"curves", Json::parse(data.curvesJson)},
                                          {"runs", Json::parse(data.runsJson)}},
                                     -1);
-    std::string page(report_parts::kTemplate);
+    std::string page = reportPage(report_parts::kTemplate, "comparison", "error against run time");
     std::size_t fixed = page.size() + json.size();
-    for (const std::string_view part :
-         {report_parts::kStyle, report_parts::kD3, report_parts::kCharts, report_parts::kViewer, report_parts::kTables})
+    for (const std::string_view part : {report_parts::kCharts, report_parts::kViewer, report_parts::kTables})
         fixed += part.size();
     const PixelWriter pixels = writePixels(data, choose(data, kReportBytes - std::min(kReportBytes, fixed + 100'000)));
     // What comes from files goes in last: no mark is looked for in it.
-    replaceMark(page, "/*@STYLE@*/", report_parts::kStyle);
-    replaceMark(page, "/*@D3@*/", report_parts::kD3);
     replaceMark(page, "/*@CHARTS@*/", report_parts::kCharts);
     replaceMark(page, "/*@VIEWER@*/", report_parts::kViewer);
     replaceMark(page, "/*@TABLES@*/", report_parts::kTables);

@@ -5,6 +5,6 @@
 
 namespace pellucid::report_parts {
 
-extern const std::string_view kTemplate, kStyle, kD3, kCharts, kViewer, kTables, kTuneTemplate, kTune;
+extern const std::string_view kHead, kTemplate, kStyle, kD3, kCharts, kViewer, kTables, kTuneTemplate, kTune;
 
 }  // namespace pellucid::report_parts

@@ -1,11 +1,14 @@
 #include "report_pixels.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <vector>
+
+#include <pellucid/study/image_pair.h>
 
 namespace pellucid {
 namespace {
@@ -60,6 +63,14 @@ std::string pixelsAsBase64(const Image& image, int first, int count, PixelBytes 
 
 std::size_t base64Length(std::size_t values, PixelBytes bytes) noexcept {
     return (values * static_cast<std::size_t>(bytes) + 2) / 3 * 4;
+}
+
+Image colourOf(const Image& image) {
+    const std::array<int, 3> channels = colourChannels(image);
+    Image colour(image.width(), image.height(), {"R", "G", "B"});
+    for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel)
+        for (int c = 0; c < 3; ++c) colour.at(pixel, c) = image.at(pixel, channels[static_cast<std::size_t>(c)]);
+    return colour;
 }
 
 Image halved(const Image& image) {

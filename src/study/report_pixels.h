@@ -17,6 +17,9 @@ enum class PixelBytes { Half = 2, Short = 3, Full = 4 };
 /// Length of that text.
 [[nodiscard]] std::size_t base64Length(std::size_t values, PixelBytes bytes) noexcept;
 
+/// R G B alone.
+[[nodiscard]] Image colourOf(const Image& image);
+
 /// Mean of 2 x 2 pixels; a last odd row or column stands for itself.
 [[nodiscard]] Image halved(const Image& image);
 

@@ -3,8 +3,6 @@
 #include <bit>
 #include <cctype>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -144,18 +142,13 @@ RunStore::RunStore(std::filesystem::path folder) : folder_(std::move(folder)) {
 }
 
 std::optional<StoredRun> RunStore::find(const RunKey& key) const {
-    std::ifstream file(folder_ / "runs" / (key.name() + ".json"), std::ios::binary);
-    if (!file) return std::nullopt;
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const Json json = Json::parse(text, nullptr, false);
-    try {
-        if (json.is_discarded() || json.at("key").get<std::string>() != key.text) return std::nullopt;
-        StoredRun run = runFrom(json, key);
-        if (!std::filesystem::exists(folder_ / run.image)) return std::nullopt;
-        return run;
-    } catch (const nlohmann::json::exception&) {
-        return std::nullopt;  // a record of another version: the run is done again
-    }
+    // A record of another version is not read: the run is done again.
+    return readKeyed<Json>(folder_ / "runs" / (key.name() + ".json"), key.text, std::optional<StoredRun>(),
+                           [&](const Json& json) -> std::optional<StoredRun> {
+                               StoredRun run = runFrom(json, key);
+                               if (!std::filesystem::exists(folder_ / run.image)) return std::nullopt;
+                               return run;
+                           });
 }
 
 void RunStore::save(StoredRun& run, const Image& image, const std::map<std::string, std::string>& metadata) const {

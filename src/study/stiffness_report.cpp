@@ -19,15 +19,6 @@ using Json = nlohmann::ordered_json;
     return fmt::format("{:+.2g} ± {:.1g} %", 100.0 * f.bias, 100.0 * f.interval);
 }
 
-[[nodiscard]] std::string verdict(const Sweep& sweep, std::size_t method) {
-    const auto at = breakdown(sweep, method);
-    const std::string name(kSweepMethods[method]);
-    if (!at) return name + " holds over the whole sweep.";
-    const SweepFigures& f = sweep.steps[*at].by[method];
-    return fmt::format("{} breaks down at {:g}: error {}, of it bias {}.", name, sweep.steps[*at].value,
-                       percent(f.error), biasText(f));
-}
-
 /// A logarithmic axis on the drawing.
 struct Axis {
     double low, high, from, to;
@@ -104,6 +95,25 @@ void drawChart(std::string& svg, const Sweep& sweep, const Chart& chart, bool va
 
 }  // namespace
 
+std::string sweepVerdict(const Sweep& sweep, std::size_t method) {
+    std::vector<std::string> troubles;
+    const auto at = [&](std::size_t i) -> const SweepFigures& { return sweep.steps[i].by[method]; };
+    if (!sweep.steps.empty() && at(0).error > kBrokenFactor * kSmallError)
+        troubles.push_back(
+            fmt::format("is short of samples from the first step on, with an error of {}", percent(at(0).error)));
+    if (const auto i = breakdown(sweep, method))
+        troubles.push_back(fmt::format("breaks down at {:g}: error {}, of it bias {}", sweep.steps[*i].value,
+                                       percent(at(*i).error), biasText(at(*i))));
+    if (const auto i = blindness(sweep, method))
+        troubles.push_back(fmt::format("finds no light at all from {:g} on", sweep.steps[*i].value));
+    if (const auto i = certainBias(sweep, method))
+        troubles.push_back(fmt::format("is biased at {:g}, by {}", sweep.steps[*i].value, biasText(at(*i))));
+    std::string text(kSweepMethods[method]);
+    if (troubles.empty()) return text + " holds over the whole sweep.";
+    for (std::size_t i = 0; i < troubles.size(); ++i) text += (i == 0 ? " " : "; it ") + troubles[i];
+    return text + ".";
+}
+
 std::string sweepsTable(const std::vector<Sweep>& sweeps) {
     std::string text;
     for (const Sweep& sweep : sweeps) {
@@ -114,7 +124,7 @@ std::string sweepsTable(const std::vector<Sweep>& sweeps) {
                 row.insert(row.end(), {percent(f.error), biasText(f), figure(f.seconds)});
             table.add(std::move(row));
         }
-        text += sweep.name + "\n\n" + table.text() + verdict(sweep, 0) + "\n" + verdict(sweep, 1) + "\n\n";
+        text += sweep.name + "\n\n" + table.text() + sweepVerdict(sweep, 0) + "\n" + sweepVerdict(sweep, 1) + "\n\n";
     }
     return text;
 }
@@ -137,8 +147,11 @@ std::string sweepsJson(const std::vector<Sweep>& sweeps) {
             entry["steps"].push_back(std::move(step));
         }
         for (std::size_t m = 0; m < kSweepMethods.size(); ++m) {
-            const auto at = breakdown(sweep, m);
-            entry["breaks_down_at"][std::string(kSweepMethods[m])] = at ? Json(sweep.steps[*at].value) : Json(nullptr);
+            const std::string name(kSweepMethods[m]);
+            for (const auto& [key, step] :
+                 {std::pair("breaks_down_at", breakdown(sweep, m)), std::pair("blind_from", blindness(sweep, m)),
+                  std::pair("biased_at", certainBias(sweep, m))})
+                entry[key][name] = step ? Json(sweep.steps[*step].value) : Json(nullptr);
         }
         list.push_back(std::move(entry));
     }
@@ -153,7 +166,9 @@ std::string sweepsMarkdown(const std::vector<Sweep>& sweeps, std::string_view pi
         "95 % interval; seconds "
         "are those of one render\non the machine that made this page. A method is said to break down at the first step "
         "where its error is three\ntimes "
-        "that of the first step, or above 30 % where that one was below 10 %.\n";
+        "that of the first step, or above 30 % where that one was below 10 %; to be biased where the bias is twice "
+        "its\n"
+        "interval and above 2 %; and to find no light where every picture of all seeds is black.\n";
     if (!picture.empty()) page += fmt::format("\n![Error and seconds over each dial, path and photon]({})\n", picture);
     for (const Sweep& sweep : sweeps) {
         page += fmt::format("\n### {}\n\n{} Expected: {}. Source: {}.\n\n", sweep.name, sweep.scene, sweep.reference,
@@ -167,7 +182,7 @@ std::string sweepsMarkdown(const std::vector<Sweep>& sweeps, std::string_view pi
                 page += fmt::format(" {} | {} | {:.2g} |", percent(f.error), biasText(f), f.seconds);
             page += "\n";
         }
-        page += fmt::format("\nHere {} And {}\n", verdict(sweep, 0), verdict(sweep, 1));
+        page += fmt::format("\nHere {} And {}\n", sweepVerdict(sweep, 0), sweepVerdict(sweep, 1));
     }
     return page;
 }

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -55,6 +58,23 @@ template <class Json>
     for (const Decision& d : decisions)
         json.push_back({{"name", d.name}, {"choice", d.choice}, {"reason", d.reason}, {"overridden", d.overridden}});
     return json;
+}
+
+/// What `read` makes of the JSON in a file that this program keeps for itself; `fresh` where there is no such file, or it is
+/// damaged, or its "key" says that it was made from something else: it is then made anew.
+template <class Json, class Value, class Read>
+[[nodiscard]] Value readKeyed(const std::filesystem::path& file, const std::string& key, Value fresh,
+                              const Read& read) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return fresh;
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const Json json = Json::parse(text, nullptr, false);
+    try {
+        if (json.is_discarded() || json.at("key").template get<std::string>() != key) return fresh;
+        return read(json);
+    } catch (const typename Json::exception&) {
+        return fresh;
+    }
 }
 
 /// Text with a final newline; bytes from files that are no UTF-8 are replaced.

@@ -4,8 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include <nlohmann/json.hpp>
 
@@ -42,18 +40,10 @@ struct HalfState {
 };
 
 [[nodiscard]] HalfState readState(const std::filesystem::path& file, const std::string& key) {
-    HalfState fresh{key, 0, 0.0, false};
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return fresh;
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const Json json = Json::parse(text, nullptr, false);
-    try {
-        if (json.is_discarded() || json.at("key").get<std::string>() != key) return fresh;
+    return readKeyed<Json>(file, key, HalfState{key, 0, 0.0, false}, [&key](const Json& json) -> HalfState {
         return {key, json.at("samples").get<std::uint32_t>(), json.at("spent").get<double>(),
                 json.at("done").get<bool>()};
-    } catch (const nlohmann::json::exception&) {
-        return fresh;
-    }
+    });
 }
 
 void writeState(const std::filesystem::path& file, const HalfState& state) {

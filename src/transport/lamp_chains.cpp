@@ -1,9 +1,9 @@
 #include <pellucid/transport/lamp_chains.h>
 
-#include <algorithm>
 #include <limits>
 
 #include "medium.h"
+#include "roulette.h"
 
 namespace pellucid {
 
@@ -13,9 +13,6 @@ namespace {
 constexpr std::uint64_t kDimension = 1ULL << 20U;
 /// Roulette sets in below this throughput.
 constexpr float kLeastThroughput = 0.05F;
-/// As in a walk: no chain goes on for certain for ever.
-constexpr int kCertainVertices = 64;
-constexpr float kSurvivalBeyond = 0.9995F;
 
 }  // namespace
 
@@ -26,10 +23,9 @@ void LampChains::branchOff(const ChainVertex& vertex, const DeltaBranches& branc
         Branch b;
         b.throughput = vertex.throughput * way.weight;
         b.etaScale = vertex.etaScale * way.etaScale;
-        float survive = std::min(1.0F, maxComponent(b.throughput) * b.etaScale / kLeastThroughput);
-        if (vertex.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
-        if (!(survive > 0.0F) || (survive < 1.0F && sampler.next1D() >= survive)) continue;
-        b.throughput /= survive;
+        const float chance = survival(maxComponent(b.throughput) * b.etaScale / kLeastThroughput, vertex.vertices);
+        if (!(chance > 0.0F) || (chance < 1.0F && sampler.next1D() >= chance)) continue;
+        b.throughput /= chance;
         const bool behind = glm::dot(way.wi, ng) < 0.0F;
         b.ray = Ray{offsetOrigin(vertex.hit.point.position, behind ? -ng : ng), way.wi,
                     std::numeric_limits<float>::infinity()};

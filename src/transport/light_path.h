@@ -1,7 +1,6 @@
 /// One light path, vertex by vertex: shared by the photon passes and light tracing.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -13,15 +12,15 @@
 #include <pellucid/transport/energy.h>
 
 #include "medium.h"
+#include "roulette.h"
 
 namespace pellucid::light_path {
 
 inline constexpr std::size_t kPathsPerChunk = 2048;
 inline constexpr std::uint64_t kEmissionDimensions = 5, kDimensionsPerVertex = 4;
-inline constexpr int kCertainVertices = 64;
-inline constexpr float kSurvivalBeyond = 0.9995F;
-/// Light that grazes the true surface this flatly is dropped: its correction for shading normals would explode.
-inline constexpr float kMinGeometricCosine = 0.01F;
+/// Light whose correction for shading normals is above this is dropped: it would explode. Only where the normals differ, so
+/// that flat surfaces lose nothing, however flatly they are grazed (a room of 1000 bounces would lose a tenth of its light).
+inline constexpr float kMaxShading = 100.0F;
 
 struct LightPath {
     Ray ray;
@@ -63,11 +62,12 @@ struct Arrival {
         path.energy.absorbed -= path.watts();
     }
     const float geometric = std::fabs(glm::dot(wi, bsdf.geometricNormal()));
-    if (geometric < kMinGeometricCosine) {
+    const float shaded = std::fabs(glm::dot(wi, bsdf.shadingNormal()));
+    if (!(geometric > 0.0F) || shaded > kMaxShading * geometric) {
         path.energy.dropped += path.watts();
         return std::nullopt;
     }
-    return Arrival{*hit, bsdf, wi, std::fabs(glm::dot(wi, bsdf.shadingNormal())) / geometric};
+    return Arrival{*hit, bsdf, wi, shaded / geometric};
 }
 
 /// Scatters flux among `kinds` (`by` receives the lobe's own); the factor of shading normals is that of adjoint BSDFs. [Veach1997, 5.3]
@@ -85,11 +85,10 @@ struct Arrival {
     path.flux *= sample->weight * (a.shading * geometricOut / shadingOut);
     path.energy.*path.sink -= path.watts();
     const float after = maxComponent(path.flux);
-    float survive = before > 0.0F ? std::min(1.0F, after / before) : 0.0F;
-    if (path.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
+    const float chance = survival(before > 0.0F ? after / before : 0.0F, path.vertices);
     path.energy.roulette += path.watts();
-    if (!(survive > 0.0F) || sampler.next1D() >= survive) return false;
-    path.flux /= survive;
+    if (!(chance > 0.0F) || sampler.next1D() >= chance) return false;
+    path.flux /= chance;
     path.energy.roulette -= path.watts();
     const bool behind = glm::dot(sample->wi, a.bsdf.geometricNormal()) < 0.0F;
     path.ray = Ray{offsetOrigin(a.hit.point.position, behind ? -a.bsdf.geometricNormal() : a.bsdf.geometricNormal()),

@@ -3,41 +3,18 @@
 #include <cmath>
 #include <limits>
 
+#include "kind_choice.h"
 #include "medium.h"
+#include "roulette.h"
 
 namespace pellucid {
 
 namespace {
 
-/// Roulette keeps no path for certain beyond this many vertices, so that closed rooms of albedo 1 end.
-constexpr std::size_t kCertainVertices = 64;
-constexpr float kSurvivalBeyond = 0.9995F;
 /// A direction flatter than this has no density per area worth the name.
 constexpr float kLeastCosine = 1e-7F;
 
 [[nodiscard]] float cosine(const glm::vec3& a, const glm::vec3& b) noexcept { return std::fabs(glm::dot(a, b)); }
-
-/// One kind of lobe drawn by its share of the value; `choose` uniform. The estimate is value / share.
-struct KindChoice {
-    LobeKinds kind = kNoLobe;
-    Rgb value{0.0F};
-};
-
-[[nodiscard]] KindChoice chooseKind(const std::array<Rgb, 3>& byKind, float choose) noexcept {
-    const float total = average(byKind[0]) + average(byKind[1]) + average(byKind[2]);
-    if (!(total > 0.0F)) return {};
-    float left = choose * total;
-    std::size_t chosen = 3;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const float part = average(byKind[k]);
-        if (!(part > 0.0F)) continue;
-        chosen = k;
-        if (left < part) break;
-        left -= part;
-    }
-    if (chosen == 3) return {};
-    return {static_cast<LobeKinds>(1U << chosen), byKind[chosen] * (total / average(byKind[chosen]))};
-}
 
 /// pdf(back) / pdf(onward) of a delta lobe: the inverse of how much it spreads solid angle. Snell: n^2 cos dw is kept.
 [[nodiscard]] double deltaPdfRatio(const Scene& scene, const PathVertex& v, const BsdfSample& sample) noexcept {
@@ -183,7 +160,8 @@ bool Subpath::glossyStep(PathVertex& v, const BsdfSample& sample, float cosOut, 
     if (!value) return false;
     const KindChoice choice = chooseKind(value->byKind, choose);
     if (choice.kind == kNoLobe) return false;
-    throughput_ *= choice.value * ((from_ == From::Eye ? 1.0F : cosOut) / sample.pdfSolidAngle);
+    throughput_ *=
+        choice.value * (choice.total / choice.part) * ((from_ == From::Eye ? 1.0F : cosOut) / sample.pdfSolidAngle);
     const double out = static_cast<double>(cosOut) / static_cast<double>(sample.pdfSolidAngle);
     mis_.onward =
         rules_.power(out) * (v.mis.onward * rules_.power(static_cast<double>(value->pdfBack)) + v.mis.connect);
@@ -196,12 +174,12 @@ bool Subpath::glossyStep(PathVertex& v, const BsdfSample& sample, float cosOut, 
 bool Subpath::survives(float before, float etaScale, float u) noexcept {
     const float now = maxComponent(throughput_);
     etaScale_ *= etaScale;
-    float survive = 1.0F;
+    float wanted = 1.0F;
     if (rules_.rouletteThreshold > 0.0F)
-        survive = std::fmin(1.0F, from_ == From::Eye ? now * etaScale_ / rules_.rouletteThreshold : now / before);
-    if (vertices_.size() > kCertainVertices) survive = std::fmin(survive, kSurvivalBeyond);
-    if (!(survive > 0.0F) || u >= survive) return false;
-    throughput_ /= survive;
+        wanted = from_ == From::Eye ? now * etaScale_ / rules_.rouletteThreshold : now / before;
+    const float chance = survival(wanted, static_cast<int>(vertices_.size()));
+    if (!(chance > 0.0F) || u >= chance) return false;
+    throughput_ /= chance;
     return true;
 }
 

@@ -9,16 +9,17 @@
 #include <pellucid/transport/irradiance_cache.h>
 #include <pellucid/transport/radiance_map.h>
 
+#include "kind_choice.h"
 #include "medium.h"
+#include "roulette.h"
 #include "walk_state.h"
 
 namespace pellucid {
 
 namespace {
 
-/// Roulette never keeps a path for certain beyond this many vertices, so that closed rooms of albedo 1 end.
-constexpr int kCertainVertices = 64;
-constexpr float kSurvivalBeyond = 0.9995F;
+/// A look for a D vertex is given up after this many others.
+constexpr int kMostOnTheWay = 64;
 /// Sampler dimensions: 0 film, 1 lens, then this many a vertex.
 constexpr std::uint64_t kFirstDimension = 2, kDimensionsPerVertex = 8;
 enum VertexDimension : std::uint64_t {
@@ -33,6 +34,27 @@ enum VertexDimension : std::uint64_t {
 };
 /// Near a corner the map's blur would show: a gather ray shorter than u x this many look-up radii goes on instead.
 constexpr float kCornerRadii = 8.0F;
+
+/// The kind of lobe that made a direction, and what that makes of the throughput. No kind: nothing came this way.
+struct Onward {
+    LobeKinds kind = kNoLobe;
+    Rgb weight{0.0F};
+};
+
+/// Where several kinds could have made the direction one is chosen by its share of f, so that every class gets its own energy.
+[[nodiscard]] Onward onward(const Bsdf& bsdf, const glm::vec3& wo, const BsdfSample& sample, LobeKinds sampled,
+                            Sampler& sampler) noexcept {
+    const LobeKinds present = bsdf.kinds() & sampled;
+    if (sample.delta || (present & (present - 1)) == 0) return {sample.kind, sample.weight};
+    std::array<Rgb, 3> f{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto kind = static_cast<LobeKinds>(1U << i);
+        if ((present & kind) != kNoLobe) f[i] = bsdf.eval(wo, sample.wi, kind, TransportMode::Radiance);
+    }
+    const KindChoice chosen = chooseKind(f, sampler.next1D());
+    if (chosen.kind == kNoLobe) return {};
+    return {chosen.kind, chosen.value * (chosen.total / (chosen.part * sample.pdfSolidAngle))};
+}
 
 }  // namespace
 
@@ -103,43 +125,12 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     const auto sample =
         vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance, context_.options.directions);
     if (!sample) return false;
-    LobeKinds kind = sample->kind;
-    Rgb weight = sample->weight;
-    const LobeKinds present = vertex.bsdf.kinds() & sampled;
-    if (!sample->delta && (present & (present - 1)) != 0) {
-        // Several kinds could have made this direction: choose one by its share of f, so that every class gets its own energy.
-        Rgb f[3];
-        float total = 0.0F;
-        for (int i = 0; i < 3; ++i) {
-            const auto k = static_cast<LobeKinds>(1 << i);
-            f[i] = (present & k) != kNoLobe ? vertex.bsdf.eval(vertex.wo, sample->wi, k, TransportMode::Radiance)
-                                            : Rgb(0.0F);
-            total += average(f[i]);
-        }
-        if (!(total > 0.0F)) return false;
-        float left = sampler.next1D() * total;
-        int chosen = 0;
-        while (chosen < 2 && (left >= average(f[chosen]) || average(f[chosen]) == 0.0F)) left -= average(f[chosen++]);
-        while (chosen > 0 && average(f[chosen]) == 0.0F) --chosen;
-        kind = static_cast<LobeKinds>(1 << chosen);
-        weight = f[chosen] * (total / (average(f[chosen]) * sample->pdfSolidAngle));
-    }
+    const Onward on = onward(vertex.bsdf, vertex.wo, *sample, sampled, sampler);
+    if (on.kind == kNoLobe) return false;
     state.deltaChain = state.deltaChain && sample->delta;
-    state.throughput *= weight;
+    state.throughput *= on.weight;
     state.etaScale *= sample->etaScale;
-    const bool casts = kind == kSpecular;
-    state.ledger.pass(kind);
-    if (kind == kDiffuse) {
-        state.behind = state.causticServed && !state.sharedNext ? Behind::CausticMapped : Behind::PathTraced;
-        state.chainsShared = state.sharedNext;
-        state.chainEmpty = state.chainSpecular = true;
-        state.gathering = true;
-        state.skipDirect = false;
-        state.onlyChains = state.chainsNext;
-    } else {
-        state.chainEmpty = false;
-        state.chainSpecular = state.chainSpecular && casts;
-    }
+    state.pass(on.kind);
     state.pdfSolidAngle = sample->pdfSolidAngle;
     state.lightPoint = vertex.hit.point.position;
     state.lightNormal = vertex.lightNormal;
@@ -150,13 +141,12 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     state.ray.absorption =
         medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, sample->transmitted);
     const float threshold = context_.options.rouletteThreshold;
-    float survive =
-        threshold > 0.0F ? std::min(1.0F, maxComponent(state.throughput) * state.etaScale / threshold) : 1.0F;
-    if (state.vertices > kCertainVertices) survive = std::min(survive, kSurvivalBeyond);
-    if (!(survive > 0.0F)) return false;
-    if (survive < 1.0F) {
-        if (sampler.next1D() >= survive) return false;
-        state.throughput /= survive;
+    const float wanted = threshold > 0.0F ? maxComponent(state.throughput) * state.etaScale / threshold : 1.0F;
+    const float chance = survival(wanted, state.vertices);
+    if (!(chance > 0.0F)) return false;
+    if (chance < 1.0F) {
+        if (sampler.next1D() >= chance) return false;
+        state.throughput /= chance;
     }
     return true;
 }
@@ -274,7 +264,7 @@ GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexce
         sampler.setDimension(dimension + kCoin);
         ++rays_;
         const auto hit = context_.scene.intersect(state.ray.ray, holes_ ? sampler.next1D() : 0.0F);
-        if (!hit || ++state.vertices > kCertainVertices) return {};
+        if (!hit || ++state.vertices > kMostOnTheWay) return {};
         state.pathLength += hit->distance;
         const glm::vec3 wo = -state.ray.ray.direction;
         const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo);

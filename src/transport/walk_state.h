@@ -35,6 +35,21 @@ struct Walk::State {
     float kernelRadius = 0.0F;   ///< at that D vertex
     bool causticServed = false;  ///< at this D vertex: what comes over S alone is counted
 
+    /// Goes on over a lobe of this kind.
+    void pass(LobeKinds kind) noexcept {
+        ledger.pass(kind);
+        if (kind != kDiffuse) {
+            chainEmpty = false;
+            chainSpecular = chainSpecular && kind == kSpecular;
+            return;
+        }
+        behind = causticServed && !sharedNext ? Behind::CausticMapped : Behind::PathTraced;
+        chainsShared = sharedNext;
+        chainEmpty = chainSpecular = true;
+        gathering = true;
+        skipDirect = false;
+        onlyChains = chainsNext;
+    }
     /// Whether light that is met now has come over S alone to a receiver whose caustics photons share.
     [[nodiscard]] bool hasSharedChain() const noexcept { return chainsShared && chainSpecular && !chainEmpty; }
     /// Whether a lamp that is met now belongs to path tracing.

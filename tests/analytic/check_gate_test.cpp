@@ -39,7 +39,7 @@ const glm::dvec3 kUp(0, 0, 1);
 
 TEST(CheckGate, SeesEnergyThatIsLostOrMade) {
     const Workers workers(2);
-    const By path{Method::Path, 128, 0.0, 0.03}, photon{Method::Photon, 4, 0.01, 0.03};
+    const By path{Method::Path, 32, 0.0, 0.03}, photon{Method::Photon, 4, 0.01, 0.03};
     EXPECT_TRUE(holds(room(workers, path, 1.0F, 0)));
     EXPECT_TRUE(holds(room(workers, photon, 1.0F, 0)));
     EXPECT_FALSE(holds(room(workers, path, 1.05F, 0)));  // 5 % too bright

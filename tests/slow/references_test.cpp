@@ -89,6 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Witness{"cornell-boxes", Method::Path, 24, 0.0}, Witness{"cornell-boxes", Method::Bdpt, 12, 0.0},
                       Witness{"corridor", Method::Bdpt, 24, 0.0}, Witness{"cornell-glass", Method::Reference, 24, 0.02},
                       Witness{"cornell-glass", Method::Bdpt, 24, 0.02}, Witness{"ring", Method::Reference, 24, 0.02},
+                      Witness{"ring", Method::Bdpt, 48, 0.02}, Witness{"goblet", Method::Bdpt, 24, 0.02},
                       Witness{"pool", Method::Reference, 24, 0.02}, Witness{"goblet", Method::Reference, 24, 0.02},
                       Witness{"peer-box", Method::Reference, 8, 0.01}),
     [](const auto& w) {
@@ -96,12 +97,6 @@ INSTANTIATE_TEST_SUITE_P(
         name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
         return name + (w.param.method == Method::Path ? "Path" : w.param.method == Method::Bdpt ? "Bdpt" : "Reference");
     });
-
-/// The photon method's allowance in a group; classes that it samples from the lamps have none.
-double photonAllowance(const std::string& group) {
-    if (group.ends_with("..L")) return 0.05;
-    return group.ends_with("DSL") ? 0.03 : 0.0;
-}
 
 class Ledger : public ::testing::TestWithParam<std::string> {};
 

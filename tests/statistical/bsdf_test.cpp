@@ -247,6 +247,34 @@ TEST(BsdfFurnace, NothingGainsEnergy) {
         }
 }
 
+/// White Lambertian with its cosine left out, and glass whose radiance is scaled by eta^2 where flux is meant.
+TEST(BsdfFurnace, SeesPlantedBugs) {
+    Material white = lambert();
+    white.baseColor = glm::vec4(1.0F);
+    const std::vector<Material> list{white, body(0.0F)};
+    const SurfaceModel model(list, {});
+    const glm::vec3 wo = direction(0.5F), inside = direction(-0.9F);
+    const Bsdf diffuse = model.bsdf(pointOf(0), wo), glass = model.bsdf(pointOf(1), inside);
+    EXPECT_NEAR(furnace(diffuse, wo, TransportMode::Flux), 1.0, 1e-4);
+    EXPECT_LE(furnace(glass, inside, TransportMode::Flux), 1.0 + 1e-4);
+    EXPECT_GT(furnace(glass, inside, TransportMode::Radiance) - 1.0, 0.3);
+    // int f over the hemisphere is 2 where int f cos is 1.
+    const Frame frame(glm::vec3(0.0F, 0.0F, 1.0F));
+    const SphereGrid grid{{0.0F, 0.0F, 1.0F}, 1.0, 16, 16};
+    double sum = 0.0;
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 16; ++j) {
+            const testing::detail::Cell cell{i / 16.0, (i + 1) / 16.0, j * kPiD / 8.0, (j + 1) * kPiD / 8.0};
+            const auto value = [&](const glm::vec3& wi) {
+                return static_cast<double>(diffuse.eval(wo, wi, kAllLobes, TransportMode::Flux).g) /
+                       std::max(1e-6, static_cast<double>(wi.z));
+            };
+            sum += testing::detail::integrate(grid, frame, value, cell,
+                                              testing::detail::gauss4x4(grid, frame, value, cell), 0);
+        }
+    EXPECT_GT(sum, 1.9);
+}
+
 TEST(BsdfFurnace, CoatOverWhiteLosesLittle) {
     const std::vector<Material> list{lambert(), dielectric("smooth", 0.0F), dielectric("rough", 0.4F),
                                      dielectric("rougher", 0.8F)};
@@ -331,6 +359,31 @@ TEST(Bsdf, DeltaBranchesAreTheMeanOfSamples) {
             EXPECT_NEAR(reflected, sampledReflected, 2e-3F) << m << ' ' << cosine;
             EXPECT_NEAR(transmitted, sampledTransmitted, 5e-3F) << m << ' ' << cosine;
         }
+}
+
+/// Largest relative difference between f(a, b) / etaA^2 and f(b, a) / etaB^2; `squared` false: with eta^2 left out.
+double irreciprocity(const SurfaceModel& model, std::uint32_t m, const Material& material, bool squared) {
+    const bool volume = material.thickness > 0.0F && material.ior > 0.0F && squared;
+    std::mt19937_64 random(5);
+    double worst = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+        const glm::vec3 a = randomDirection(random), b = randomDirection(random);
+        const float etaA = volume && a.z < 0.0F ? material.ior : 1.0F,
+                    etaB = volume && b.z < 0.0F ? material.ior : 1.0F;
+        const Rgb ab =
+            model.bsdf(pointOf(m), a).eval(a, b, kAllLobes, TransportMode::Radiance) / (std::fabs(b.z) * etaA * etaA);
+        const Rgb ba =
+            model.bsdf(pointOf(m), b).eval(b, a, kAllLobes, TransportMode::Radiance) / (std::fabs(a.z) * etaB * etaB);
+        worst = std::max(worst, static_cast<double>(maxComponent(glm::abs(ab - ba)) / (maxComponent(ab) + 1e-3F)));
+    }
+    return worst;
+}
+
+TEST(Bsdf, ReciprocitySeesEtaSquaredLeftOut) {
+    const std::vector<Material> list{body(0.4F)};
+    const SurfaceModel model(list, {});
+    EXPECT_LE(irreciprocity(model, 0, list[0], true), 5e-3);
+    EXPECT_GT(irreciprocity(model, 0, list[0], false), 0.3);
 }
 
 TEST(Bsdf, Reciprocity) {

@@ -208,12 +208,6 @@ TEST(Estimators, TheGateSeesPlantedBugs) {
     }
 }
 
-/// What the photon method may be off by in a group: nothing where it samples lamps, the kernel's and the cache's bias else.
-double photonAllowance(const std::string& group) {
-    if (group.ends_with("..L")) return 0.05;
-    return group.ends_with("DSL") ? 0.03 : 0.0;
-}
-
 /// Class by class: a double count or a loss names itself.
 class ClassLedger : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 
@@ -245,6 +239,33 @@ TEST_P(ClassLedger, PhotonsCarryWhatBidirectionalPathsCarry) {
 INSTANTIATE_TEST_SUITE_P(Ways, ClassLedger,
                          ::testing::Values(std::pair{"", ""}, std::pair{"photon.chance", "on"},
                                            std::pair{"photon.caustic_map", "off"}));
+
+/// Two estimators that both carry the caustics, path tracing with a caustic pass of light tracing on top: the gate says which
+/// class is counted twice. And one that carries none of them: which is lost.
+TEST(ClassGate, NamesTheClassThatIsCountedTwiceOrLost) {
+    const Workers workers;
+    const SmallScene small = smoothCasters();
+    const Scene scene = made(small, workers);
+    Rendering path{Method::Path, 64, 6};
+    path.width = path.height = 16;
+    path.layers = {"classes"};
+    const std::vector<Image> right = renderSeeds(scene, path, workers);
+    path.firstSeed = 400;
+    const auto planted = [&](double factor) {
+        std::vector<Image> images = renderSeeds(scene, path, workers);
+        for (Image& image : images)
+            for (const char* c : {"R", "G", "B"}) {
+                const int channel = image.channel(std::string("class.EDSL.") + c);
+                for (std::size_t i = 0; i < image.pixels(); ++i)
+                    image.at(i, channel) = static_cast<float>(factor * static_cast<double>(image.at(i, channel)));
+            }
+        return images;
+    };
+    const auto none = [](const std::string&) { return 0.0; };
+    for (const double factor : {1.0, 2.0, 0.0})
+        for (const GroupDifference& d : compareGroups(right, planted(factor), none, 0.0))
+            EXPECT_EQ(d.holds(), factor == 1.0 || d.group != "EDSL") << factor << ", " << d.group;
+}
 
 TEST(PathStrings, StringsAndGroups) {
     PathString path;

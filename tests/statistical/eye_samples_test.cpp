@@ -1,17 +1,18 @@
 /// How eye samples are spread: over noisy pixels, and over both ways that an interface leads to a lamp. Neither may change
 /// what the image means, nor its bits with threads or a break.
-#include <filesystem>
-
-#include <unistd.h>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "../support/files.h"
+#include "../support/same_bits.h"
 #include "agreement.h"
 #include "small_scenes.h"
 
 namespace pellucid {
 namespace {
 
+using test::expectSameBits;
 using namespace testing;
 
 Settings with(Settings settings, const std::string& name, const std::string& value) {
@@ -94,10 +95,15 @@ RenderRequest adaptiveRequest(std::uint32_t samples) {
     return request;
 }
 
-void expectSameBits(const Image& a, const Image& b) {
-    ASSERT_EQ(a.channels(), b.channels());
-    for (std::size_t i = 0; i < a.pixels(); ++i)
-        for (int c = 0; c < a.channels(); ++c) ASSERT_EQ(a.at(i, c), b.at(i, c)) << "pixel " << i << ", channel " << c;
+/// The image of a render that broke off after `samples` and went on.
+Image overABreak(const Scene& scene, RenderRequest request, std::uint32_t samples, const Workers& workers) {
+    const test::TemporaryFolder folder;
+    request.checkpoint = folder / "checkpoint";
+    const auto all = std::exchange(request.budget.samples, samples);
+    (void)render(scene, request, workers);
+    request.budget.samples = all;
+    request.resume = true;
+    return render(scene, request, workers).image;
 }
 
 /// Photon paths are as many as their noise is worth: what decides that must outlive the break, too.
@@ -109,16 +115,7 @@ TEST(EyeSamples, PhotonsByNoiseKeepTheBitsOverABreak) {
     setParameter(request.settings, "photon.caustic", "auto");
     setParameter(request.settings, "photon.chance", "on");
     const Image whole = render(scene, request, two).image;
-    RenderRequest broken = request;
-    broken.budget.samples = 12;
-    broken.checkpoint =
-        std::filesystem::temp_directory_path() / ("pellucid-photons-by-noise-" + std::to_string(::getpid()));
-    (void)render(scene, broken, one);
-    broken.budget.samples = 60;
-    broken.resume = true;
-    const Image resumed = render(scene, broken, one).image;
-    std::filesystem::remove(broken.checkpoint);
-    expectSameBits(whole, resumed);
+    expectSameBits(whole, overABreak(scene, request, 12, one));
 }
 
 TEST(EyeSamples, SharesByNoiseKeepTheBits) {
@@ -136,14 +133,7 @@ TEST(EyeSamples, SharesByNoiseKeepTheBits) {
     }
     EXPECT_LT(least, most);
 
-    RenderRequest broken = adaptiveRequest(9);
-    broken.checkpoint = std::filesystem::temp_directory_path() / ("pellucid-eye-samples-" + std::to_string(::getpid()));
-    (void)render(scene, broken, one);
-    broken.budget.samples = 20;
-    broken.resume = true;
-    const Image resumed = render(scene, broken, one).image;
-    std::filesystem::remove(broken.checkpoint);
-    expectSameBits(alone, resumed);
+    expectSameBits(alone, overABreak(scene, request, 9, one));
 }
 
 }  // namespace

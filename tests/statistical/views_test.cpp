@@ -3,13 +3,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 
@@ -19,12 +16,15 @@
 #include <pellucid/scene/scene.h>
 
 #include "../../src/render/point_cloud.h"
+#include "../support/files.h"
+#include "../support/same_bits.h"
 #include "small_scenes.h"
 
 namespace pellucid {
 namespace {
 
 namespace fs = std::filesystem;
+using test::expectSameBits;
 using namespace testing::detail;
 
 /// A corner with a glass ball under a lamp; three cameras side by side that look the same way, and one that is near.
@@ -62,11 +62,6 @@ using namespace testing::detail;
     throw std::runtime_error("no stage " + name);
 }
 
-void expectSameBits(const Image& a, const Image& b) {
-    ASSERT_EQ(a.data().size(), b.data().size());
-    EXPECT_EQ(std::memcmp(a.data().data(), b.data().data(), a.data().size() * sizeof(float)), 0);
-}
-
 [[nodiscard]] double mean(const Image& image, const std::string& channel) {
     double sum = 0.0;
     for (std::size_t i = 0; i < image.pixels(); ++i) sum += static_cast<double>(image.at(i, image.channel(channel)));
@@ -75,11 +70,6 @@ void expectSameBits(const Image& a, const Image& b) {
 
 class Views : public ::testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() / ("pellucid-views-" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     [[nodiscard]] fs::path path(const std::string& name) const { return folder_ / name; }
 
     [[nodiscard]] RenderResult renderWith(const RenderRequest& request, const std::string& file) const {
@@ -104,22 +94,17 @@ protected:
     Scene scene_{ballInCorner(), std::nullopt, SceneOptions{}, workers_};
 
 private:
-    fs::path folder_;
+    test::TemporaryFolder folder_;
 };
-
-[[nodiscard]] std::string bytesOf(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 TEST_F(Views, TheSameViewFromItsFileHasTheSameBits) {
     const RenderResult without = renderWith(smallRequest("camera 1"), "");
     const RenderResult first = renderWith(smallRequest("camera 1"), "cache");
-    const std::string written = bytesOf(path("cache"));
+    const std::string written = test::bytesOf(path("cache"));
     const RenderResult again = renderWith(smallRequest("camera 1"), "cache");
     expectSameBits(without.image, first.image);
     expectSameBits(first.image, again.image);
-    EXPECT_EQ(bytesOf(path("cache")), written) << "nothing was added, so nothing is to be written";
+    EXPECT_EQ(test::bytesOf(path("cache")), written) << "nothing was added, so nothing is to be written";
     EXPECT_FALSE(without.record.reuse.asked);
     EXPECT_EQ(first.record.reuse.recordsReused, 0U);
     EXPECT_GT(first.record.reuse.recordsNew, 50U);
@@ -149,7 +134,7 @@ TEST_F(Views, AMovedCameraAddsOnlyWhatItLacks) {
     RenderRequest alone = smallRequest("camera 2");
     alone.cacheFile = path("for one thread");
     expectSameBits(render(scene_, alone, Workers(1)).image, moved.image);
-    EXPECT_EQ(bytesOf(path("for one thread")), bytesOf(path("cache")));
+    EXPECT_EQ(test::bytesOf(path("for one thread")), test::bytesOf(path("cache")));
 }
 
 /// The last camera looks at a patch of the floor from a tenth of the distance at which the first has seen it whole: there is
@@ -198,11 +183,11 @@ TEST_F(Views, AStaleFileIsRefusedWithTheReason) {
 
 TEST_F(Views, ADamagedFileIsRefused) {
     (void)renderWith(smallRequest("camera 1", 1), "cache");
-    const std::string whole = bytesOf(path("cache"));
+    const std::string whole = test::bytesOf(path("cache"));
     const auto refused = [&](const std::string& bytes) {
         std::ofstream(path("bad"), std::ios::binary | std::ios::trunc) << bytes;
         const std::string words = refusal(scene_, smallRequest("camera 1", 1), "bad");
-        EXPECT_EQ(bytesOf(path("bad")), bytes) << "a refused file stays as it is";
+        EXPECT_EQ(test::bytesOf(path("bad")), bytes) << "a refused file stays as it is";
         return words;
     };
     for (const std::size_t at : {whole.size() - 1, whole.size() / 2, std::size_t{40}}) {
@@ -307,10 +292,10 @@ TEST_F(Views, AFlythroughReadsAndFillsTheCacheFile) {
     renderViews(scene_, request, {"camera 1", "camera 2"}, keep, workers_);
     const std::size_t first = records;
     EXPECT_GT(first, 50U);
-    const std::string written = bytesOf(path("cache"));
+    const std::string written = test::bytesOf(path("cache"));
     renderViews(scene_, request, {"camera 2", "camera 1"}, keep, workers_);
     EXPECT_EQ(records, first);
-    EXPECT_EQ(bytesOf(path("cache")), written);
+    EXPECT_EQ(test::bytesOf(path("cache")), written);
 }
 
 TEST(ViewsFile, LinesBecomeCameras) {
@@ -387,7 +372,7 @@ TEST_F(Views, PointCloudsStandInTheScenesOwnMetres) {
     RenderRequest request = smallRequest("camera 1", 1);
     request.pointsFolder = path("points");
     const RenderResult result = render(scene, request, workers_);
-    const std::string records = bytesOf(path("points") / "records.ply");
+    const std::string records = test::bytesOf(path("points") / "records.ply");
     EXPECT_TRUE(records.starts_with("ply\nformat binary_little_endian 1.0\n"));
     const Ply ply = readPly(records);
     EXPECT_EQ(ply.vertices.size(), stage(result.record, "irradiance cache").records);
@@ -398,7 +383,7 @@ TEST_F(Views, PointCloudsStandInTheScenesOwnMetres) {
             << p.x << " " << p.y << " " << p.z;
         EXPECT_GT(v[9], 0.0F);
     }
-    const Ply photons = readPly(bytesOf(path("points") / "caustic-photons.ply"));
+    const Ply photons = readPly(test::bytesOf(path("points") / "caustic-photons.ply"));
     EXPECT_EQ(photons.vertices.size(), stage(result.record, "caustic photons").photonsStored);
     EXPECT_EQ(photons.properties[11], "flux_blue");
     // Flux in watts grows with the area of the lamp.
@@ -410,8 +395,8 @@ TEST_F(Views, PointCloudsStandInTheScenesOwnMetres) {
         for (const std::vector<float>& v : cloud.vertices) sum += static_cast<double>(v[10]);
         return sum;
     };
-    EXPECT_NEAR(flux(photons) / flux(readPly(bytesOf(path("small") / "caustic-photons.ply"))) / (scale * scale), 1.0,
-                0.05);
+    EXPECT_NEAR(flux(photons) / flux(readPly(test::bytesOf(path("small") / "caustic-photons.ply"))) / (scale * scale),
+                1.0, 0.05);
 }
 
 }  // namespace

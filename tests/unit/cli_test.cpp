@@ -1,14 +1,9 @@
 // The built command from outside: exit statuses, the form of errors, and that JSON parses.
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <regex>
 #include <string>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +12,7 @@
 #include <pellucid/io/plain_file.h>
 #include <pellucid/study/metrics.h>
 
+#include "../support/command.h"
 #include "gltf_builder.h"
 
 namespace pellucid {
@@ -24,35 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-    int status = -1;
-    std::string out, err;
-};
+using test::Outcome;
 
-class Cli : public testing::Test {
+class Cli : public test::CommandTest {
 protected:
-    void SetUp() override {
-        if (!fs::exists(PELLUCID_BINARY)) GTEST_SKIP() << "the command is not built";
-        const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(testing::TempDir()) / ("pellucid_cli_" + std::to_string(getpid()) + "_" + info->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-    [[nodiscard]] static std::string read(const std::string& file) {
-        std::ifstream stream(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
-
-    /// Runs in a shell with the arguments as typed; `before` stands in front of the command.
+    [[nodiscard]] static std::string read(const std::string& file) { return test::bytesOf(file); }
     [[nodiscard]] Outcome run(const std::string& arguments, const std::string& before = "") const {
-        const std::string command = before + " '" PELLUCID_BINARY "' " + arguments + " >'" + path("stdout") + "' 2>'" +
-                                    path("stderr") + "' </dev/null";
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("stdout")), read(path("stderr"))};
+        return runCommand(arguments, before);
     }
 
     /// The run fails with `status`, nothing on standard output and one well-formed line that holds `words`.
@@ -76,9 +51,6 @@ protected:
         const fs::path file = fs::path(PELLUCID_SHARED_SCENES) / "generated" / name;
         return fs::exists(file) ? file.string() : "";
     }
-
-private:
-    fs::path folder_;
 };
 
 TEST_F(Cli, WrongUse) {

@@ -4,15 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <span>
 #include <string>
-
-#include <sys/wait.h>
-
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -24,16 +18,15 @@
 #include <pellucid/study/report.h>
 #include <pellucid/study/statistics.h>
 
+#include "../support/command.h"
+
 namespace pellucid {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-[[nodiscard]] std::string read(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
+[[nodiscard]] std::string read(const fs::path& file) { return test::bytesOf(file); }
 
 TEST(CompareMethods, CarryTheirOwnSettings) {
     Settings common;
@@ -138,30 +131,14 @@ TEST(CompareReport, StaysBelowItsSize) {
     EXPECT_LT(reportHtml(data).size(), 15'000'000U);
 }
 
-class CompareCli : public testing::Test {
+class CompareCli : public test::CommandTest {
 protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) / ("pellucid_compare_" + std::to_string(getpid()) + "_" +
-                                                  testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    [[nodiscard]] int run(const std::string& arguments) const {
-        const int status =
-            std::system(("'" PELLUCID_BINARY "' compare " + arguments + " >'" + (folder_ / "stdout").string() +
-                         "' 2>'" + (folder_ / "stderr").string() + "' </dev/null")
-                            .c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
+    [[nodiscard]] int run(const std::string& arguments) const { return runCommand("compare " + arguments).status; }
     [[nodiscard]] static std::string scene() { return std::string(PELLUCID_SOURCE_DIR) + "/scenes/diffuse-room.glb"; }
-
-    fs::path folder_;
 };
 
 TEST_F(CompareCli, WrongUse) {
-    const std::string out = " -o '" + folder_.string() + "'";
+    const std::string out = " -o '" + folder_.path().string() + "'";
     EXPECT_EQ(run(scene() + out + " --times 1"), 1);
     EXPECT_EQ(run(scene() + out + " --methods path"), 1);
     EXPECT_EQ(run(scene() + out + " --methods pth --times 1"), 1);

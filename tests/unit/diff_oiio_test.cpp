@@ -3,8 +3,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 
@@ -15,10 +13,10 @@
 #include <pellucid/io/plain_file.h>
 #include <pellucid/math/hash.h>
 
+#include "../support/files.h"
+
 namespace pellucid {
 namespace {
-
-namespace fs = std::filesystem;
 
 [[nodiscard]] std::string outputOf(const std::string& command) {
     const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen((command + " 2>&1").c_str(), "r"), pclose);
@@ -37,9 +35,7 @@ namespace fs = std::filesystem;
 
 TEST(DiffCli, AgreesWithOiiotool) {
     if (std::system("command -v oiiotool >/dev/null 2>&1") != 0) GTEST_SKIP() << "oiiotool is missing";
-    const fs::path folder = fs::path(testing::TempDir()) / "pellucid_diff_oiio";
-    fs::remove_all(folder);
-    fs::create_directories(folder);
+    const test::TemporaryFolder folder;
     const std::string reference = (folder / "a.exr").string();
     writeExr(reference, noise(1), {});
     writeExr(folder / "b.exr", noise(2), {});
@@ -56,7 +52,6 @@ TEST(DiffCli, AgreesWithOiiotool) {
         const nlohmann::json& row = json.is_array() ? json.at(0) : json.at("images").at(0);
         EXPECT_NEAR(row.at("rmse").get<double>(), expected, 2e-5 * expected) << name;
     }
-    fs::remove_all(folder);
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 /// generated must be what the code would generate now.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -14,6 +12,8 @@
 
 #include <pellucid/render/settings_page.h>
 
+#include "../support/files.h"
+
 namespace pellucid {
 namespace {
 
@@ -21,10 +21,7 @@ namespace fs = std::filesystem;
 
 const fs::path kRoot(PELLUCID_SOURCE_DIR);
 
-std::string read(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
+std::string read(const fs::path& file) { return test::bytesOf(file); }
 
 std::vector<fs::path> filesUnder(const std::vector<std::string>& folders, const std::set<std::string>& extensions) {
     std::vector<fs::path> files;

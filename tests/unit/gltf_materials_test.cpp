@@ -1,14 +1,12 @@
 /// Materials and textures of glTF files.
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 
 #include <pellucid/io/image_file.h>
 
+#include "../support/files.h"
 #include "gltf_builder.h"
 
 namespace pellucid {
@@ -138,15 +136,13 @@ TEST(GltfMaterials, PrimitivesWithoutMaterialGetTheDefault) {
 
 /// A picture of 2 x 1 pixels, red and green, as the bytes of a PNG.
 std::vector<std::byte> smallPng() {
-    const std::filesystem::path file =
-        std::filesystem::temp_directory_path() / ("pellucid_gltf_" + std::to_string(getpid()) + ".png");
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "small.png";
     Image image(2, 1, {"R", "G", "B"});
     image.setRgb(0, {1, 0, 0});
     image.setRgb(1, {0, 1, 0});
     writePng(file, image, 0.0F);
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    std::filesystem::remove(file);
+    const std::string text = test::bytesOf(file);
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
 }

@@ -4,12 +4,11 @@
 #include <fstream>
 #include <limits>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
 #include <pellucid/math/constants.h>
 
+#include "../support/files.h"
 #include "gltf_builder.h"
 
 namespace pellucid {
@@ -438,17 +437,9 @@ TEST(Gltf, UnknownExtensionsAreNamedOnce) {
     EXPECT_EQ(scene.warnings.size(), 2U);
 }
 
-/// A folder that goes away with the test.
 class GltfFiles : public testing::Test {
 protected:
-    GltfFiles() {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder =
-            std::filesystem::temp_directory_path() / ("pellucid_gltf_" + std::to_string(getpid()) + "_" + info->name());
-        std::filesystem::remove_all(folder);
-        std::filesystem::create_directories(folder / "sub");
-    }
-    ~GltfFiles() override { std::filesystem::remove_all(folder); }
+    GltfFiles() { std::filesystem::create_directories(folder / "sub"); }
 
     void write(const std::filesystem::path& name, std::span<const std::byte> bytes) const {
         std::ofstream(folder / name, std::ios::binary)
@@ -470,7 +461,7 @@ protected:
             EXPECT_NE(e.where().find("buffers[0]"), std::string::npos) << e.what();
         }
     }
-    std::filesystem::path folder;
+    test::TemporaryFolder folder;
     std::vector<std::byte> data = triangle().binary;
 };
 
@@ -516,7 +507,7 @@ TEST_F(GltfFiles, SaysWhichFileIsMissingOrShort) {
     writeScene("data:application/octet-stream;base64,AA?A");
     expectFileError("malformed");
     EXPECT_THROW((void)loadGltf(folder / "no.gltf"), Error);
-    EXPECT_THROW((void)loadGltf(folder), Error);
+    EXPECT_THROW((void)loadGltf(folder.path()), Error);
 }
 
 TEST_F(GltfFiles, ReadsBase64) {

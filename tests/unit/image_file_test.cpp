@@ -4,13 +4,13 @@
 #include <limits>
 #include <string>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
 #include <pellucid/base/error.h>
 #include <pellucid/io/image_file.h>
 #include <pellucid/io/plain_file.h>
+
+#include "../support/files.h"
 
 namespace pellucid {
 namespace {
@@ -19,28 +19,17 @@ namespace fs = std::filesystem;
 
 class ImageFile : public testing::Test {
 protected:
-    ImageFile() {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder = fs::temp_directory_path() / ("pellucid_image_" + std::to_string(getpid()) + "_" + info->name());
-        fs::remove_all(folder);
-        fs::create_directories(folder);
-    }
-    ~ImageFile() override { fs::remove_all(folder); }
-
-    [[nodiscard]] std::string bytes(const char* name) const {
-        std::ifstream stream(folder / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    }
+    [[nodiscard]] std::string bytes(const char* name) const { return test::bytesOf(folder / name); }
     void write(const char* name, std::string_view text) const {
         std::ofstream(folder / name, std::ios::binary) << text;
     }
     [[nodiscard]] std::ptrdiff_t files() const {
-        return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+        return std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator());
     }
     [[nodiscard]] std::shared_ptr<const TextureImage> decode(const std::string& text) const {
         return decodeTexture(std::as_bytes(std::span(text)), "here");
     }
-    fs::path folder;
+    test::TemporaryFolder folder;
 };
 
 Image ramp(int width, int height, std::vector<std::string> names) {

@@ -2,10 +2,7 @@
 // comparison with the wrong exit status.
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 
@@ -23,10 +20,10 @@
 #include <pellucid/scene/scene.h>
 #include <pellucid/study/stiffness.h>
 
+#include "../support/command.h"
+
 namespace pellucid {
 namespace {
-
-namespace fs = std::filesystem;
 
 [[nodiscard]] std::string ringFile() { return PELLUCID_SOURCE_DIR "/scenes/ring.glb"; }
 
@@ -124,26 +121,31 @@ TEST(NoSilentTrouble, BreakdownsAreFoundWhereTheyAre) {
     EXPECT_NE(sweepsMarkdown({sweep}, "s.svg").find("path breaks down at 0.01"), std::string::npos);
 }
 
-class Command : public testing::Test {
+/// A black picture is as far off at the first step as at the last: no breakdown by the error, but it must be told.
+TEST(NoSilentTrouble, SweepsTellOfNoiseBlindnessAndBias) {
+    Sweep sweep;
+    for (const auto& [value, path, photon] :
+         {std::tuple(1.0, SweepFigures{3.2, 0.02, 0.5}, SweepFigures{0.05, 0.01, 0.02}),
+          std::tuple(0.1, SweepFigures{1.0, -1.0, 0.0}, SweepFigures{0.06, -0.1, 0.06}),
+          std::tuple(0.01, SweepFigures{1.0, -1.0, 0.0}, SweepFigures{0.11, -0.1, 0.04})})
+        sweep.steps.push_back({value, {path, photon}});
+    EXPECT_FALSE(breakdown(sweep, 0));
+    EXPECT_EQ(blindness(sweep, 0), 1U);
+    EXPECT_FALSE(certainBias(sweep, 0));
+    EXPECT_FALSE(blindness(sweep, 1));
+    EXPECT_EQ(certainBias(sweep, 1), 2U);
+    EXPECT_EQ(sweepVerdict(sweep, 0),
+              "path is short of samples from the first step on, with an error of 320 %; it finds no light at all from "
+              "0.1 on.");
+    EXPECT_NE(sweepVerdict(sweep, 1).find("is biased at 0.01"), std::string::npos);
+    sweep.steps.resize(1);
+    EXPECT_EQ(sweepVerdict(sweep, 1), "photon holds over the whole sweep.");
+}
+
+class Command : public test::CommandTest {
 protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  (std::string("pellucid_trouble_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    [[nodiscard]] int run(const std::string& arguments) const {
-        const int status = std::system(("'" PELLUCID_BINARY "' " + arguments + " >'" + (folder_ / "stdout").string() +
-                                        "' 2>'" + (folder_ / "stderr").string() + "' </dev/null")
-                                           .c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-    [[nodiscard]] std::string read(const char* name) const {
-        std::ifstream stream(folder_ / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
-    fs::path folder_;
+    [[nodiscard]] int run(const std::string& arguments) const { return runCommand(arguments).status; }
+    [[nodiscard]] std::string read(const char* name) const { return test::bytesOf(folder_ / name); }
 };
 
 TEST_F(Command, DebugSamplePrintsThePath) {

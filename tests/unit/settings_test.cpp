@@ -4,14 +4,14 @@
 #include <set>
 #include <string>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
 #include <pellucid/base/error.h>
 #include <pellucid/base/nearest_name.h>
 #include <pellucid/io/settings_file.h>
 #include <pellucid/render/settings.h>
+
+#include "../support/files.h"
 
 namespace pellucid {
 namespace {
@@ -29,15 +29,14 @@ Error errorOf(const std::string& name, const std::string& value) {
 
 class SettingsFile : public testing::Test {
 protected:
-    std::string write(const std::string& text) {
-        file_ = std::filesystem::path(testing::TempDir()) / ("pellucid_settings_" + std::to_string(getpid()) + ".toml");
-        std::ofstream(file_) << text;
-        return file_.string();
+    std::string write(const std::string& text) const {
+        const std::filesystem::path file = folder_ / "settings.toml";
+        std::ofstream(file) << text;
+        return file.string();
     }
-    void TearDown() override { std::filesystem::remove(file_); }
 
 private:
-    std::filesystem::path file_;
+    test::TemporaryFolder folder_;
 };
 
 TEST(Settings, NamesAreUniqueAndDefaultsRoundTrip) {

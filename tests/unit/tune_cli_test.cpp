@@ -1,14 +1,13 @@
 // `pellucid tune` as a user runs it: wrong use, the files, the same front again, interruption, and the warning of
 // render.
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <nlohmann/json.hpp>
+
+#include "../support/command.h"
 
 namespace pellucid {
 namespace {
@@ -16,27 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-[[nodiscard]] std::string read(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
+[[nodiscard]] std::string read(const fs::path& file) { return test::bytesOf(file); }
 
-class TuneCli : public testing::Test {
+class TuneCli : public test::CommandTest {
 protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  (std::string("pellucid_tune_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     [[nodiscard]] int run(const std::string& arguments, const std::string& before = "") const {
-        const int status =
-            std::system((before + "'" PELLUCID_BINARY "' " + arguments + " >'" + (folder_ / "stdout").string() +
-                         "' 2>'" + (folder_ / "stderr").string() + "' </dev/null")
-                            .c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        return runCommand(arguments, before).status;
     }
     [[nodiscard]] static std::string scene(const std::string& name = "diffuse-room") {
         return "'" PELLUCID_SOURCE_DIR "/scenes/" + name + ".glb'";
@@ -48,12 +32,10 @@ protected:
                "--over cache.error=0.3..1,cache.max_spacing=5..40 " +
                more;
     }
-
-    fs::path folder_;
 };
 
 TEST_F(TuneCli, WrongUse) {
-    const std::string out = " -o '" + folder_.string() + "'";
+    const std::string out = " -o '" + folder_.path().string() + "'";
     EXPECT_EQ(run("tune " + scene() + out + " --budget 10"), 1);
     EXPECT_EQ(run("tune " + scene() + out + " --time 1"), 1);
     EXPECT_NE(read(folder_ / "stderr").find("--budget"), std::string::npos);

@@ -16,7 +16,7 @@ namespace pellucid {
 struct RawHit {
     std::uint32_t geometry = 0, primitive = 0;
     float u = 0.0F, v = 0.0F;  ///< barycentric weights of the second and third corner
-    float t = 0.0F;
+    float t = 0.0F;            ///< distance along the ray, scene units
 };
 
 class Accel {
@@ -29,6 +29,7 @@ public:
 
     /// False when nothing is hit in (0, ray.tMax), or when the ray is not finite.
     [[nodiscard]] bool intersect(const Ray& ray, RawHit& hit) const noexcept;
+    /// Whether anything is hit in (0, ray.tMax).
     [[nodiscard]] bool occluded(const Ray& ray) const noexcept;
     [[nodiscard]] const Bounds& bounds() const noexcept;
 

@@ -21,11 +21,11 @@ struct Mesh {
     std::uint32_t material = 0;  ///< index into the scene's materials
 };
 
-/// One placement of a mesh. `toWorld` is affine and invertible.
+/// One placement of a mesh. `toWorld` is affine and invertible, in metres; under a negative determinant, which turns the
+/// winding over, Scene keeps the front on the side of the mirrored normals.
 struct Geometry {
     std::uint32_t mesh = 0;
-    glm::dmat4 toWorld{
-        1.0};  ///< negative determinant: the front goes along with the mirrored normals, Scene sees to it
+    glm::dmat4 toWorld{1.0};
 };
 
 }  // namespace pellucid

@@ -12,8 +12,8 @@ namespace pellucid {
 
 struct Ray {
     glm::vec3 origin{0.0F};
-    glm::vec3 direction{0.0F, 0.0F, 1.0F};  ///< unit length
-    float tMax = std::numeric_limits<float>::infinity();
+    glm::vec3 direction{0.0F, 0.0F, 1.0F};                ///< unit length
+    float tMax = std::numeric_limits<float>::infinity();  ///< distance where it ends, scene units
 };
 
 /// Moves `point` off its surface along `normal` (on the side that the new ray leaves to) by about one part in 65536 of

@@ -19,7 +19,7 @@ namespace pellucid {
 
 /// What a pixel has shown so far. Variances are of one sample, not of the mean.
 struct PixelNoise {
-    float eyeVariance = 0.0F;     ///< of the luminance of an eye sample
+    float eyeVariance = 0.0F;     ///< of the luminance of an eye sample, (W m^-2 sr^-1)^2
     float photonVariance = 0.0F;  ///< of the luminance that an iteration's photons give
     float blur2 = 0.0F;           ///< square of the kernels' bias, free of its own noise: may be negative
     float luminance = 0.0F;
@@ -86,8 +86,8 @@ private:
         double splat[kPathClasses][3] = {};
         double splatHalf[3] = {};
         double square = 0.0;  ///< of the luminance of an iteration's mean
-        double eyeSum = 0.0,
-               eyeSquare = 0.0;  ///< of the luminance without what photons gave, weighed by the number of samples
+        /// Of the luminance without what photons gave, weighed by the number of samples.
+        double eyeSum = 0.0, eyeSquare = 0.0;
         double sharedSum = 0.0, sharedSquare = 0.0;  ///< of the luminance that photons gave
         double blur = 0.0, blurHalf = 0.0;
         std::uint64_t rays = 0;

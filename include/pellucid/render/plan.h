@@ -14,20 +14,20 @@
 
 namespace pellucid {
 
-/// What the camera sees at D vertices, one look a pixel.
+/// What the camera sees at D vertices: a walk a pixel, through its middle, to the first of them.
 struct Survey {
     std::vector<GatherPoint> points;  ///< by pixel; not valid where no D vertex was found
     std::size_t receivers = 0;        ///< pixels with a valid one
-    float medianFootprint = 0.0F;
-    VisibleCells visible{1.0F};
+    float medianFootprint = 0.0F;     ///< of a pixel there, scene units
+    VisibleCells visible{1.0F};       ///< around the points, as far as kernels reach
     std::uint64_t rays = 0;
 };
 
 /// What one generation of the cache is made with.
 struct GenerationSize {
     std::uint32_t globalPaths = 0;
-    int gatherRays = 0;
-    float cacheError = 0.0F;
+    int gatherRays = 0;       ///< a record
+    float cacheError = 0.0F;  ///< Ward's a
 };
 
 struct Plan {
@@ -36,13 +36,16 @@ struct Plan {
     std::uint32_t globalPaths = 0;   ///< for the first generation of the cache
     bool adaptiveRadius = true;      ///< of the caustic kernel, pixel by pixel
     float causticFootprints = 2.5F;  ///< kernel radius of the first iteration where it is not
+    /// The caustic kernel's area shrinks by (i + alpha) / (i + 1) in iteration i.
     float alpha = 2.0F / 3.0F;
+    /// Ward's a, in the first generation.
     float cacheError = 0.25F;
     CacheMetric cacheMetric = CacheMetric::Hessian;
     bool cacheChoice = true;             ///< where records do not pay, points gather for themselves
     int gatherRays = 128;                ///< a record, in the first generation
     std::uint32_t mostCausticPaths = 0;  ///< of any iteration, for photon.memory; 0: no limit
     std::uint32_t mostGlobalPaths = 0;   ///< of any generation, for photon.memory; 0: no limit
+    /// From generation to generation.
     bool growPhotons = true, growRays = true;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
     bool causticChains = false;    ///< beside the cache eye paths follow S chains to the lamps, alone or with a share

@@ -43,12 +43,12 @@ struct RenderRequest {
     std::uint64_t seed = 0;
     Budget budget;
     Settings settings;
-    std::vector<std::string>
-        layers;  ///< beyond the four that are always there: albedo, normal, depth, variance, records, radius, ... ; "all"
+    /// Beyond the four that are always there: names of auxiliaryLayers() (render/film.h), or "all".
+    std::vector<std::string> layers;
     std::filesystem::path checkpoint;  ///< empty: none
     bool resume = false;
-    std::filesystem::path
-        cacheFile;  ///< what views have learnt of the light: read if it is there, and written; empty: none
+    /// What views have learnt of the light: read if it is there, and written; empty: none.
+    std::filesystem::path cacheFile;
     std::filesystem::path pointsFolder;  ///< for PLY files of records and caustic photons; empty: none
     /// Only these pixels are rendered, the rest stays black; empty: all. Plan and photons are those of the whole image, and
     /// all costs, in the budget and in the record, are scaled up to it: a cheap look at what the whole image would be.
@@ -102,15 +102,15 @@ struct RenderRecord {
     TexelReport texels;
     ReuseReport reuse;
     std::vector<Decision> decisions;
-    std::vector<CausticLink>
-        causticLinks;  ///< lamp x caster, those that matter most first; empty where no photons are planned
+    /// Lamp x caster, those that matter most first; empty where no photons are planned.
+    std::vector<CausticLink> causticLinks;
     std::vector<std::string> blindSpots;  ///< path classes that this method cannot see in this scene
     std::vector<StageRecord> stages;
     std::uint32_t iterations = 0, samplesPerPixel = 0;
     double seconds = 0.0;
     double errorEstimate = 0.0;  ///< relative, root of the estimated relmse
-    double noiseEstimate = 0.0,
-           blurEstimate = 0.0;  ///< its parts, added in squares: noise, and bias of the photons' kernels
+    /// Its parts, added in squares: noise, and bias of the photons' kernels.
+    double noiseEstimate = 0.0, blurEstimate = 0.0;
     NonFinite nonfinite;
     Settings resolved;
     int threads = 0;

@@ -19,8 +19,8 @@ struct Settings {
     std::string directions = "bsdf";     ///< path.directions: uniform | cosine | bsdf
     std::string lightStrategy = "mis";   ///< path.lights: none | nee | mis
     std::string sampler = "sobol";       ///< path.sampler: independent | stratified | halton | sobol
-    double rouletteThreshold =
-        1.0;                        ///< path.roulette: throughput below which Russian roulette may end a path; 0: never
+    /// path.roulette: throughput below which Russian roulette may end a path; 0: never
+    double rouletteThreshold = 1.0;
     int maxDepth = 0;               ///< path.max_depth: number of surface vertices; 0: no limit
     std::string split = "auto";     ///< path.split: auto | on | off
     std::string adaptive = "auto";  ///< path.adaptive: auto | on | off

@@ -37,8 +37,8 @@ struct SceneDescription {
     std::size_t droppedTriangles = 0;   ///< degenerate ones
 };
 
-/// Light from infinity, given by the user: a constant or an equirectangular map (RGB, y up, the centre column looks
-/// along -z... see scene/environment.h for the exact mapping).
+/// Light from infinity, given by the user: a constant, or an equirectangular map (RGB, y up; scene/environment.h has the
+/// mapping). Radiance, W m^-2 sr^-1.
 struct EnvironmentDescription {
     Rgb constant{0.0F};
     Image map;                     ///< empty: constant

@@ -15,20 +15,21 @@
 
 namespace pellucid {
 
-/// In normalised scene space. `uv` of both sets at the corners, for textured emission.
+/// A triangle that emits, in normalised scene space. Its texture stays with the scene: see Lights::TriangleRadiance.
 struct EmissiveTriangle {
     glm::vec3 corner[3];
     glm::vec3 normal{0.0F};  ///< unit geometric normal, by winding (after the transform)
     float area = 0.0F;
     bool twoSided = false;
     std::uint32_t geometry = 0, primitive = 0;
-    Rgb meanRadiance{0.0F};  ///< texture average over the triangle (an estimate for choosing, > 0 wherever it emits)
+    /// The texture's mean over it, W m^-2 sr^-1: an estimate for choosing, > 0 wherever it emits.
+    Rgb meanRadiance{0.0F};
 };
 
 /// Punctual lights in normalised scene space (intensity already scaled).
 struct PointEmitter {
     glm::vec3 position{0.0F};
-    Rgb intensity{0.0F};  ///< W/sr (in scene units squared)
+    Rgb intensity{0.0F};  ///< W/sr, with areas in scene units
 };
 struct SpotEmitter {
     glm::vec3 position{0.0F}, direction{0.0F, 0.0F, -1.0F};
@@ -53,8 +54,8 @@ struct LightSample {
     glm::vec3 wi{0.0F};     ///< unit, to the light
     float distance = 0.0F;  ///< infinity for directional and environment
     Rgb radiance{0.0F};     ///< towards the point; of a delta light the irradiance across wi: I / d^2 or E
-    float pdfSolidAngle =
-        0.0F;  ///< of wi, with the choice of the light; of a delta light the probability of the choice
+    /// Of wi, with the choice of the light; of a delta light the probability of the choice.
+    float pdfSolidAngle = 0.0F;
     bool delta = false;
     std::uint32_t light = 0;
 };
@@ -63,8 +64,8 @@ struct LightSample {
 struct EmissionSample {
     Ray ray;
     Rgb flux{0.0F};  ///< Le cos / (p_light p_position p_direction), in W: the photon's power for one emitted path
-    float pdfPosition =
-        0.0F;  ///< per area (of the emitter, or of the disc that stands for infinity); 1 for point lights
+    /// Per area of the emitter, or of the disc that stands for infinity; 1 for point lights.
+    float pdfPosition = 0.0F;
     float pdfDirection = 0.0F;  ///< per solid angle; 1 for directional
     float pmfLight = 0.0F;
     std::uint32_t light = 0;

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// "photon", "path", "light" or "reference".
+/// As --method takes it.
 [[nodiscard]] std::string methodName(Method method);
 
 /// What a RenderRecord does not know of itself.

@@ -40,11 +40,19 @@ struct Sweep {
 };
 
 /// A method breaks down at a step where its error is this many times that of the tame end, the first step, or of
-/// kSmallError where that one is smaller: noise that was there from the start is no breakdown.
+/// kSmallError where that one is smaller: noise that was there from the start is no breakdown, but told as what it is.
 inline constexpr double kBrokenFactor = 3.0, kSmallError = 0.1;
 
 /// The first step where the method has broken down; empty: none.
 [[nodiscard]] std::optional<std::size_t> breakdown(const Sweep& sweep, std::size_t method) noexcept;
+/// The first step from which on no sample of any seed finds light: a black picture, whatever its error bar says.
+[[nodiscard]] std::optional<std::size_t> blindness(const Sweep& sweep, std::size_t method) noexcept;
+/// The first step whose bias is kCertainly times its interval and above kSmallBias; empty: none.
+[[nodiscard]] std::optional<std::size_t> certainBias(const Sweep& sweep, std::size_t method) noexcept;
+inline constexpr double kCertainly = 2.0, kSmallBias = 0.02;
+
+/// One sentence about a method: that it holds over the whole sweep, or every way in which it does not.
+[[nodiscard]] std::string sweepVerdict(const Sweep& sweep, std::size_t method);
 
 [[nodiscard]] std::vector<std::string_view> sweepNames();
 

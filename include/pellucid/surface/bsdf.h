@@ -23,7 +23,7 @@ namespace pellucid {
 /// Bit set of lobe kinds.
 enum LobeKinds : std::uint8_t { kNoLobe = 0, kSpecular = 1, kGlossy = 2, kDiffuse = 4, kAllLobes = 7 };
 
-/// What the light or the importance is carried along a path: refraction scales radiance by (eta_i/eta_t)^2, flux not.
+/// What a path carries: refraction scales radiance by (eta_i/eta_t)^2 and leaves flux as it is.
 enum class TransportMode { Radiance, Flux };
 
 /// Roughness thresholds (glTF's perceptual roughness; GGX alpha = roughness^2).
@@ -105,8 +105,8 @@ struct CoatLobe {   ///< GGX reflection of a dielectric over the diffuse base
 };
 struct DielectricLobe {  ///< reflection and transmission, exact Fresnel; alpha 0: delta
     Rgb tint{1.0F};      ///< multiplies transmission, once per crossing: KHR_materials_volume's base colour is a foil
-    float eta =
-        1.5F;  ///< ior on the far side over ior on wo's side (of the wall itself for a thin one); 0 reflects all
+    /// Ior on the far side over ior on wo's side (of the wall itself for a thin one); 0 reflects all.
+    float eta = 1.5F;
     float alpha = 0.0F;
     float specular = 1.0F;  ///< multiplies the reflectance short of total reflection
     bool thin = false;      ///< thin-walled: R' = 2R/(1+R), transmission straight on

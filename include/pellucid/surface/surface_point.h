@@ -9,14 +9,14 @@ namespace pellucid {
 
 struct SurfacePoint {
     glm::vec3 position{0.0F};
-    glm::vec3 geometricNormal{0.0F, 0.0F,
-                              1.0F};  ///< unit; by the triangle's winding (glTF: counter-clockwise is the front)
-    glm::vec3 shadingNormal{0.0F, 0.0F,
-                            1.0F};  ///< unit, interpolated, on the same side as geometricNormal; not yet normal-mapped
+    /// Unit; by the triangle's winding (glTF: counter-clockwise is the front).
+    glm::vec3 geometricNormal{0.0F, 0.0F, 1.0F};
+    /// Unit, interpolated, on the same side as geometricNormal; not yet normal-mapped.
+    glm::vec3 shadingNormal{0.0F, 0.0F, 1.0F};
     glm::vec3 tangent{1.0F, 0.0F, 0.0F};  ///< unit, for normal maps; zero when there is none
     float tangentSign = 1.0F;             ///< bitangent = sign * cross(shadingNormal, tangent)
-    glm::vec2 uv[2]{};
-    glm::vec4 color{1.0F};
+    glm::vec2 uv[2]{};                    ///< of both sets, as glTF counts them
+    glm::vec4 color{1.0F};                ///< of the vertices, linear: multiplies the base colour
     std::uint32_t geometry = 0, primitive = 0, material = 0;
     glm::vec2 barycentric{0.0F};  ///< weights of the triangle's second and third corner
 };

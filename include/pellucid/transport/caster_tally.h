@@ -26,7 +26,7 @@ struct TalliedLamp {
     LightKind kind = LightKind::Point;
     std::uint32_t source = 0;           ///< of the description's lights (punctual) or materials (triangles); kUnknown
     std::vector<std::uint32_t> lights;  ///< numbers in scene.lights()
-    double power = 0.0;
+    double power = 0.0;                 ///< W
     static constexpr std::uint32_t kUnknown = ~0U;
 };
 

@@ -26,8 +26,8 @@ struct UsefulEmission {
 
 struct GuidedEmission {
     EmissionSample emission;  ///< flux is that of one emitted path, guided density included
-    UsefulEmission
-        origin;  ///< weight: inverse density (to be multiplied with the flux that arrives, relative to emission.flux)
+    /// Its weight is the inverse density: to be multiplied with the flux that arrives, relative to emission.flux.
+    UsefulEmission origin;
 };
 
 class EmissionGuide {

@@ -13,7 +13,7 @@ struct EnergyBalance {
     double stored = 0.0;    ///< ended where this pass keeps a photon (or a splat)
     double left = 0.0;      ///< ended at a receiver where another estimator carries it
     double roulette = 0.0;  ///< ended by chance, less what the survivors were given: 0 on average
-    double dropped = 0.0;   ///< grazed the true surface too flatly to be used: the pass's only loss
+    double dropped = 0.0;  ///< arrived so flatly that its correction for shading normals explodes: the pass's only loss
 
     [[nodiscard]] double accounted() const noexcept { return escaped + absorbed + stored + left + roulette + dropped; }
     /// What is missing, as a share of what was emitted.

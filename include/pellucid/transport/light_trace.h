@@ -15,7 +15,7 @@ namespace pellucid {
 
 struct LightSplat {
     std::uint32_t pixel = 0;
-    Rgb radiance{0.0F};  ///< already divided by the number of paths of the pass
+    Rgb radiance{0.0F};  ///< W m^-2 sr^-1, already divided by the number of paths of the pass
     PathString path;     ///< from the eye
 };
 
@@ -25,7 +25,7 @@ struct CausticArrival {
     glm::vec2 barycentric{0.0F};
     bool backSide = false;
     float cosine = 0.0F;
-    Rgb flux{0.0F};  ///< of irradiance under the shading normal, divided by the number of paths of the pass
+    Rgb flux{0.0F};  ///< W under the shading normal, already divided by the number of paths of the pass
 };
 
 struct LightPass {

@@ -31,8 +31,8 @@ struct SubpathRules {
 /// Sums of ratios of densities, each raised by SubpathRules::power. Double: they are products of squares.
 struct MisSums {
     double connect = 0.0;  ///< dVCM: of the technique that connects this vertex's predecessor to what lies behind it
-    double onward =
-        0.0;  ///< dVC: of all techniques that connect farther back, still without the density of the way back
+    /// dVC: of all techniques that connect farther back, still without the density of the way back.
+    double onward = 0.0;
 };
 
 struct PathVertex {

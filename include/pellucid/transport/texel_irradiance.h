@@ -40,8 +40,8 @@ public:
 private:
     /// A coarse texel: one of n^2 parts of one side of a triangle.
     struct Key {
-        std::uint32_t geometry = 0, primitive = 0, row = 0,
-                      column = 0;  ///< lowest bits of row: upper half; of column: back side
+        std::uint32_t geometry = 0, primitive = 0;
+        std::uint32_t row = 0, column = 0;  ///< lowest bit of row: upper half; of column: back side
         bool operator==(const Key&) const = default;
     };
     struct KeyHash {

@@ -18,13 +18,13 @@ class CausticMap;
 class RadianceMap;
 class IrradianceCache;
 
-/// Null: the pass is left out and its class is path traced.
+/// What passes before the eye's have left for walks to look up. Null: the pass is left out and its class is path traced.
 struct Maps {
     const CausticMap* caustic = nullptr;
     /// Beside the cache eye paths follow S chains to the lamps: for all caustics, or with a caustic map for a share of them.
     bool causticChains = false;
-    float photonsPerEtendue =
-        0.0F;  ///< with both: photon paths of a pass, and how many times denser the guide makes them
+    /// With both, N of chanceShare(): photon paths of a pass, times how much denser the guide makes those that are useful.
+    float photonsPerEtendue = 0.0F;
     const RadianceMap* global = nullptr;
     const IrradianceCache* cache = nullptr;
     float causticRadiusMin = 0.0F;  ///< in scene units
@@ -78,7 +78,7 @@ struct GatherPoint {
     bool valid = false;
     glm::vec3 position{0.0F}, normal{0.0F}, geometricNormal{0.0F};
     float footprint = 0.0F;  ///< width of a pixel there, scene units
-    Rgb absorption{0.0F};    ///< of the medium in which the gather rays start
+    Rgb absorption{0.0F};    ///< of the medium in which the gather rays start, per scene unit
     DiffuseLobe lobe;
     float throughput = 0.0F;  ///< luminance of the path's throughput there
     float directLuminance = 0.0F;
@@ -87,9 +87,9 @@ struct GatherPoint {
 /// A ray that carries a footprint and the medium it is in.
 struct WalkRay {
     Ray ray;
-    float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;
-    Rgb absorption{0.0F};           ///< of the medium, per scene unit
-    float kernelFootprints = 1.0F;  ///< radius of the caustic kernel, in pixel footprints
+    float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;  ///< as in CameraRay
+    Rgb absorption{0.0F};                                    ///< of the medium, per scene unit
+    float kernelFootprints = 1.0F;                           ///< radius of the caustic kernel, in pixel footprints
 };
 
 class Walk {

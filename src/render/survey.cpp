@@ -1,0 +1,58 @@
+// What the camera sees at D vertices, one look a pixel.
+#include <algorithm>
+#include <numeric>
+
+#include <pellucid/math/hash.h>
+#include <pellucid/render/plan.h>
+
+namespace pellucid {
+
+namespace {
+
+/// The value below which so many per cent of them lie. Reorders them.
+[[nodiscard]] float quantile(std::vector<float>& values, std::size_t percent) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * percent / 100);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/// How large what is seen is on the film, and where photons are useful.
+void markVisible(Survey& s, float kernelFootprints, float largestKernel) {
+    std::vector<float> footprints;
+    for (const GatherPoint& p : s.points)
+        if (p.valid) footprints.push_back(p.footprint);
+    s.receivers = footprints.size();
+    if (footprints.empty()) return;
+    s.medianFootprint = quantile(footprints, 50);
+    const auto reach = [&](float footprint) { return std::min(kernelFootprints * footprint, largestKernel); };
+    // Cells of half the reach of all kernels but the largest few: a mark takes at most five cells along an axis.
+    const float cell = std::max({8.0F * s.medianFootprint, 0.5F * reach(quantile(footprints, 95)), 1e-4F});
+    s.visible = VisibleCells(cell);
+    for (const GatherPoint& p : s.points)
+        if (p.valid) s.visible.mark(p.position, std::min(reach(p.footprint), 2.0F * cell));
+}
+
+}  // namespace
+
+Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, float kernelFootprints,
+              float largestKernel, const Workers& workers) {
+    Survey s;
+    const auto width = static_cast<std::size_t>(camera.width());
+    s.points.resize(width * static_cast<std::size_t>(camera.height()));
+    std::vector<std::uint64_t> rays((s.points.size() + 1023) / 1024, 0);
+    workers.forRanges(s.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        Walk walk(context);
+        for (std::size_t i = begin; i < end; ++i) {
+            Sampler sampler(hash64(seed ^ 0x737572766579ULL), i, 0);
+            const CameraRay ray =
+                camera.ray({static_cast<float>(i % width) + 0.5F, static_cast<float>(i / width) + 0.5F}, {0.5F, 0.5F});
+            s.points[i] = walk.findGatherPoint({ray.ray, ray.footprintAtOrigin, ray.footprintSpread}, sampler);
+        }
+        rays[begin / 1024] = walk.rays();
+    });
+    s.rays = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    markVisible(s, kernelFootprints, largestKernel);
+    return s;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,17 @@
+/// Russian roulette, as all paths play it: one that survives is worth the inverse of its chance, so nothing is lost on average.
+#pragma once
+
+#include <algorithm>
+
+namespace pellucid {
+
+/// A path's chance to go on, at most 1, from what its throughput asks for. Beyond 64 vertices no path goes on for certain, so
+/// that closed rooms of albedo 1 end.
+[[nodiscard]] inline float survival(float wanted, int vertices) noexcept {
+    constexpr int kCertainVertices = 64;
+    constexpr float kSurvivalBeyond = 0.9995F;
+    const float chance = std::min(1.0F, wanted);
+    return vertices > kCertainVertices ? std::min(chance, kSurvivalBeyond) : chance;
+}
+
+}  // namespace pellucid
