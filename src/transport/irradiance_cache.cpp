@@ -115,21 +115,24 @@ void IrradianceCache::adopt(const IrradianceRecord& record, float reach) {
 }
 
 void IrradianceCache::insert(IrradianceRecord record) {
-    if (metric_ != CacheMetric::Hessian) clampWithNeighbours(record);
+    clampWithNeighbours(record);
     adopt(record, record.radius * error_);
 }
 
 /// Each radius by the others' plus their distance: a record finds out from its neighbours what its own rays have missed.
-/// [Krivanek2006] The Hessian sees the same from the edges around; with it clamping costs more records than it is worth.
+/// [Krivanek2006] The Hessian sees the same from the edges around; by it only records of other views shrink, which would
+/// speak beside the finer ones that this view has added.
 void IrradianceCache::clampWithNeighbours(IrradianceRecord& record) {
-    forNear(record.position, [&](std::uint32_t i) {
-        const IrradianceRecord& other = records_[i];
-        if (glm::dot(other.normal, record.normal) < 0.5F) return;
-        record.radius = std::min(record.radius, other.radius + glm::length(other.position - record.position));
-    });
+    const bool bothWays = metric_ != CacheMetric::Hessian;
+    if (bothWays)
+        forNear(record.position, [&](std::uint32_t i) {
+            const IrradianceRecord& other = records_[i];
+            if (glm::dot(other.normal, record.normal) < 0.5F) return;
+            record.radius = std::min(record.radius, other.radius + glm::length(other.position - record.position));
+        });
     forNear(record.position, [&](std::uint32_t i) {
         IrradianceRecord& other = records_[i];
-        if (glm::dot(other.normal, record.normal) < 0.5F) return;
+        if (glm::dot(other.normal, record.normal) < 0.5F || (!bothWays && other.born >= record.born)) return;
         other.radius = std::min(other.radius, record.radius + glm::length(other.position - record.position));
     });
 }

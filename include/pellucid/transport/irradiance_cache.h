@@ -67,7 +67,8 @@ public:
     explicit IrradianceCache(const Bounds& bounds, float error, CacheMetric metric = CacheMetric::Ward,
                              const Scene* scene = nullptr);
 
-    /// Adds a record; but for Hessian records clamps its radius and its neighbours' (each by the other's plus their distance).
+    /// Adds a record; clamps its radius and its neighbours' (each by the other's plus their distance);
+    /// by Hessian only those of other views.
     void insert(IrradianceRecord record);
 
     /// Adds a record as it is, found within `reach`: from records() and reaches(), in order, the same cache comes back.
