@@ -125,15 +125,16 @@ std::vector<Finding> nephroidFlux(const CheckContext& context) {
         const double length = glm::length(glm::dvec2(x, y) - c.radius * glm::dvec2(std::cos(phi), std::sin(phi)));
         return c.irradiance * std::sin(c.slant) / std::fabs(1.0 - 2.0 * length / (c.radius * std::cos(phi)));
     });
-    return measureByAll(context,
-                        {b.description(),
-                         {},
-                         expected,
-                         kPiD / kRho,
-                         "irradiance before the cusp",
-                         {{Method::Photon, 4, 0.01, 0.02, "caustic"}, {Method::Light, 8, 0.005, 0.02, "caustic"}},
-                         16,
-                         smallSettings()});
+    return measureByAll(context, {b.description(),
+                                  {},
+                                  expected,
+                                  kPiD / kRho,
+                                  "irradiance before the cusp",
+                                  {{Method::Photon, 4, 0.01, 0.02, "caustic"},
+                                   {Method::Light, 8, 0.005, 0.02, "caustic"},
+                                   {Method::Bdpt, 512, 0.005, 0.2, "caustic"}},
+                                  16,
+                                  smallSettings()});
 }
 
 /// Photons along a strip on the axis: the densest place is the cusp, but for the strip's width, in which the two branches

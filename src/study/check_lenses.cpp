@@ -108,15 +108,16 @@ std::vector<Finding> ballLens(const CheckContext& context) {
     b.view(middle, kUp, patch, 0.5);
     const double expected = meanOverSquare(
         [&](double u, double v) { return irradianceAt(std::hypot(middle.x + patch * (u - 0.5), patch * (v - 0.5))); });
-    return measureByAll(context,
-                        {b.description(),
-                         {},
-                         expected,
-                         kPiD / kRho,
-                         "irradiance",
-                         {{Method::Photon, 4, 0.015, 0.12, "caustic"}, {Method::Light, 32, 0.01, 0.12, "caustic"}},
-                         16,
-                         smallSettings()});
+    return measureByAll(context, {b.description(),
+                                  {},
+                                  expected,
+                                  kPiD / kRho,
+                                  "irradiance",
+                                  {{Method::Photon, 4, 0.015, 0.12, "caustic"},
+                                   {Method::Light, 32, 0.01, 0.12, "caustic"},
+                                   {Method::Bdpt, 512, 0.01, 0.36, "caustic"}},
+                                  16,
+                                  smallSettings()});
 }
 
 /// After one inner reflection rays crowd at the least deviation, 180 + 2i - 4r at cos i = sqrt((n^2 - 1) / 3). They are
