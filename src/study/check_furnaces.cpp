@@ -149,7 +149,7 @@ std::vector<Finding> concentricSpheres(const CheckContext& context) {
                                             inner ? 1.0 + rho1 * l2 : l2,
                                             1.0,
                                             inner ? "radiance of the inner" : "radiance of the outer",
-                                            {{Method::Path, 32, 0.0}, {Method::Photon, 20, 0.015, 0.03}},
+                                            {{Method::Path, 32, 0.0}, {Method::Photon, 8, 0.015, 0.04}},
                                             16,
                                             furnaceSettings()});
         all.insert(all.end(), found.begin(), found.end());
