@@ -91,9 +91,10 @@ struct TuneArguments {
 struct CheckArguments {
     std::string filter;
     bool json = false, markdown = false, quick = false, quiet = false;
-    bool list = false;    ///< names and what they guard, nothing is run
-    bool sweeps = false;  ///< the sweeps of stiffness instead of the cases
-    std::string plot;     ///< SVG of the sweeps; empty: none
+    bool list = false;         ///< names and what they guard, nothing is run
+    bool sweeps = false;       ///< the sweeps of stiffness instead of the cases
+    bool convergence = false;  ///< error against photons instead of the cases
+    std::string plot;          ///< SVG of the sweeps or of the convergence; empty: none
     int threads = 0;
     std::uint64_t seed = 0;
 };

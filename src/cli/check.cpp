@@ -6,6 +6,7 @@
 #include <pellucid/base/error.h>
 #include <pellucid/io/plain_file.h>
 #include <pellucid/study/check.h>
+#include <pellucid/study/convergence.h>
 #include <pellucid/study/stiffness.h>
 #include <pellucid/study/text_table.h>
 
@@ -44,9 +45,24 @@ namespace {
     return text;
 }
 
+void runConvergence(const CheckArguments& arguments) {
+    if (!arguments.plot.empty()) checkFolderWritable(arguments.plot);
+    const Workers workers(arguments.threads);
+    const LogSink log = terminalLog(arguments.quiet);
+    const std::vector<ConvergenceCurve> curves =
+        measureConvergence({workers, arguments.seed}, wholeConvergence(),
+                           [&](const ConvergenceCurve& c) { logTo(log, LogLevel::Info, c.label + " done"); });
+    if (!arguments.plot.empty()) writeFile(arguments.plot, convergenceSvg(curves));
+    printResult(arguments.json ? convergenceJson(curves) : convergenceTable(curves));
+}
+
 }  // namespace
 
 int runCheck(const CheckArguments& arguments) {
+    if (arguments.convergence) {
+        runConvergence(arguments);
+        return 0;
+    }
     if (arguments.sweeps && arguments.list) {
         printResult(listedSweeps(arguments.filter));
         return 0;

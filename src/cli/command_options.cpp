@@ -145,10 +145,17 @@ CLI::App* addCheck(CLI::App& app, CheckArguments& arguments) {
         ->add_flag("--sweeps", arguments.sweeps,
                    "instead of the cases, the sweeps of stiffness: error and time over decades of a dial")
         ->excludes(quick);
+    command
+        ->add_flag("--convergence", arguments.convergence,
+                   "instead of the cases, how the error of the photon methods falls with the number of photons")
+        ->excludes(quick)
+        ->excludes(markdown)
+        ->excludes("--sweeps");
     command->add_flag("--list", arguments.list, "the names of the cases and what each guards; nothing is run")
         ->excludes(json)
         ->excludes(markdown);
-    command->add_option("--plot", arguments.plot, "draw the sweeps of --sweeps or --markdown")->type_name("OUT.svg");
+    command->add_option("--plot", arguments.plot, "draw what --sweeps, --convergence or --markdown measured")
+        ->type_name("OUT.svg");
     command->add_option("--threads", arguments.threads, "worker threads; 0: all. No figure depends on it")
         ->check(CLI::Range(0, 1024))
         ->type_name("N");
@@ -165,8 +172,9 @@ CLI::App* addCheck(CLI::App& app, CheckArguments& arguments) {
 void finish(const CheckArguments& arguments) {
     if (arguments.plot.empty()) return;
     requireExtension("--plot", arguments.plot, kPlotExtensions);
-    if (!arguments.sweeps && !arguments.markdown)
-        throw Error(ErrorKind::Usage, "only sweeps are drawn", "--plot", "add --sweeps or --markdown");
+    if (!arguments.sweeps && !arguments.convergence && !arguments.markdown)
+        throw Error(ErrorKind::Usage, "only sweeps and convergence are drawn", "--plot",
+                    "add --sweeps, --convergence or --markdown");
 }
 
 }  // namespace pellucid

@@ -14,11 +14,9 @@ namespace pellucid {
 
 namespace {
 
-const std::map<std::string, Method> kMethods{{"photon", Method::Photon},
-                                             {"path", Method::Path},
-                                             {"light", Method::Light},
-                                             {"reference", Method::Reference},
-                                             {"bdpt", Method::Bdpt}};
+const std::map<std::string, Method> kMethods{{"photon", Method::Photon}, {"path", Method::Path},
+                                             {"light", Method::Light},   {"reference", Method::Reference},
+                                             {"bdpt", Method::Bdpt},     {"sppm", Method::Sppm}};
 
 template <class Number>
 CLI::Option* addBudget(CLI::App& app, const std::string& name, std::optional<Number>& limit, const std::string& help) {
@@ -67,7 +65,7 @@ void addSceneOptions(CLI::App& app, SceneArguments& common, TypedText& typed) {
     app.add_option("--method", typed.method,
                    "photon (default): maps, cache and gather. path: unbiased path tracing. "
                    "light: light tracing only. reference: path and light tracing by path class. "
-                   "bdpt: bidirectional path tracing")
+                   "bdpt: bidirectional path tracing. sppm: stochastic progressive photon mapping")
         ->check(CLI::IsMember(kMethods))
         ->type_name("NAME");
     addBudget<double>(app, "--time", common.budget.seconds, "stop after so many seconds, loading included")

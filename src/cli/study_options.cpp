@@ -16,7 +16,7 @@ CLI::App* addCompare(CLI::App& app, CompareArguments& arguments, TypedText& type
         ->type_name("DIR");
     command
         ->add_option("--methods", typed.methods,
-                     "photon, path, bdpt, light, reference, each with settings of its own after a colon")
+                     "photon, path, bdpt, light, reference, sppm, each with settings of its own after a colon")
         ->required()
         ->type_name("M[:KEY=VALUE+...],...");
     command->add_option("--times", typed.times, "budgets of each run, in seconds")->required()->type_name("S,S,...");

@@ -20,7 +20,6 @@ constexpr double kLeastLuminance = 0.1;
 constexpr double kFewestPaths = 4e3, kMostPaths = 4e6;
 /// Iterations before the radii of kernels are corrected by noise and bias.
 constexpr std::uint32_t kCorrectRadiiAfter = 8;
-constexpr float kLeastRadius = 4e-6F;  ///< of a kernel, scene units
 
 }  // namespace
 
@@ -28,6 +27,9 @@ CausticSide::CausticSide(const PreparedView& view) : view_(view) {
     if (view.plan.causticMap && view.plan.adaptiveRadius)
         radii_ = std::make_unique<KernelRadii>(view.camera.width(), view.camera.height(),
                                                radiusOptions(view.request.settings));
+    const Settings& settings = view.request.settings;
+    if (view.plan.causticMap && (view.plan.otherPhotons || settings.shrink == "chi2"))
+        shrink_ = std::make_unique<ProgressiveRadii>(view.pixelCount(), shrinkNamed(settings.shrink), settings.alpha);
 }
 
 void CausticSide::pass(PhotonSource& source, const Film& film, std::uint32_t iteration) {
@@ -37,7 +39,8 @@ void CausticSide::pass(PhotonSource& source, const Film& film, std::uint32_t ite
                             &view_.survey.visible, view_.workers);
     addPhotonPass(stage_, pass);
     stage_.photonsStored += pass.photons.size();
-    map_ = std::make_unique<CausticMap>(std::move(pass.photons), photonKernel(view_.request.settings.kernel));
+    map_ = std::make_unique<CausticMap>(std::move(pass.photons), photonKernel(view_.request.settings.kernel),
+                                        &view_.workers);
     shrinkKernels(iteration);
     if (radii_) fitRadii(film, iteration);
     if (!source.learnsFrom(iteration)) return;
@@ -51,10 +54,12 @@ void CausticSide::shrinkKernels(std::uint32_t iteration) noexcept {
 }
 
 /// Radii learn from the photons of iterations 0, 1, 3, 7, ... and are corrected after 8, 16, 32, ... by what the image shows.
+/// Where pixels shrink them by themselves there is nothing to correct; of progressive photon mapping they are the first ones.
 void CausticSide::fitRadii(const Film& film, std::uint32_t iteration) {
-    if (isLearningIteration(iteration)) radii_->learn(*map_, view_.survey.points, view_.workers);
+    if (view_.plan.otherPhotons ? iteration == 0 : isLearningIteration(iteration))
+        radii_->learn(*map_, view_.survey.points, view_.workers);
     const std::uint32_t n = film.samples();
-    if (n < kCorrectRadiiAfter || (n & (n - 1)) != 0) return;
+    if (shrink_ || n < kCorrectRadiiAfter || (n & (n - 1)) != 0) return;
     const double floor = kLeastLuminance * film.meanLuminance();
     radii_->correct(
         n,
@@ -95,13 +100,14 @@ Maps CausticSide::maps(const PhotonSource& source) const noexcept {
     maps.photonsPerEtendue = source.photonsPerEtendue();
     if (!map_) return maps;
     maps.caustic = map_.get();
-    maps.causticRadiusMin = kLeastRadius;
+    maps.causticRadiusMin = kLeastKernelRadius;
     maps.causticRadiusMax = kMaxCausticRadius * view_.scene.radius();
     return maps;
 }
 
 float CausticSide::kernelFootprints(int x, int y) const noexcept {
-    return (radii_ ? radii_->at(x, y) : view_.plan.causticFootprints) * static_cast<float>(std::sqrt(radiusScale_));
+    const float shrunk = shrink_ ? shrink_->scale(view_.pixelIndex(x, y)) : static_cast<float>(std::sqrt(radiusScale_));
+    return (radii_ ? radii_->at(x, y) : view_.plan.causticFootprints) * shrunk;
 }
 
 std::uint32_t CausticSide::pathsFor(double factor, std::uint32_t iterations) const noexcept {
@@ -115,6 +121,7 @@ void CausticSide::saveTo(CheckpointState& state) const {
     state.causticRays = raysSoFar();
     state.causticEmitted = emittedSoFar();
     if (radii_) state.radii = radii_->save();
+    if (shrink_) state.shrunk = shrink_->save();
 }
 
 bool CausticSide::restoreFrom(const CheckpointState& state) {
@@ -122,7 +129,8 @@ bool CausticSide::restoreFrom(const CheckpointState& state) {
     emittedBefore_ = state.causticEmitted;
     if (view_.plan.causticMap)
         for (std::uint32_t i = 0; i < state.iteration; ++i) shrinkKernels(i);
-    return !radii_ || radii_->restore(state.radii, view_.workers);
+    return (!radii_ || radii_->restore(state.radii, view_.workers)) &&
+           (!shrink_ || shrink_->restore(state.shrunk.data(), state.shrunk.size()));
 }
 
 }  // namespace pellucid

@@ -8,6 +8,7 @@
 #include <pellucid/render/film.h>
 #include <pellucid/transport/caustic_map.h>
 #include <pellucid/transport/kernel_radius.h>
+#include <pellucid/transport/progressive_radii.h>
 
 #include "checkpoint.h"
 #include "photon_source.h"
@@ -26,6 +27,12 @@ public:
     [[nodiscard]] Maps maps(const PhotonSource& source) const noexcept;
     /// Radius of the kernel that a pixel looks up with, in footprints.
     [[nodiscard]] float kernelFootprints(int x, int y) const noexcept;
+
+    /// What the pixel's first look-up of this iteration met. Only the thread that owns the pixel.
+    void met(std::size_t pixel, const KernelTally& tally) noexcept {
+        if (shrink_) shrink_->update(pixel, tally);
+    }
+    [[nodiscard]] bool wantsTally() const noexcept { return shrink_ != nullptr; }
 
     /// Of all passes, with those before a break, which decide alike after it.
     [[nodiscard]] std::uint64_t raysSoFar() const noexcept { return raysBefore_ + stage_.rays; }
@@ -47,7 +54,8 @@ private:
     [[nodiscard]] std::uint64_t emittedSoFar() const noexcept { return emittedBefore_ + stage_.photonsEmitted; }
 
     const PreparedView& view_;
-    std::unique_ptr<KernelRadii> radii_;  ///< none: one radius for all pixels
+    std::unique_ptr<KernelRadii> radii_;        ///< none: one radius for all pixels
+    std::unique_ptr<ProgressiveRadii> shrink_;  ///< none: all pixels alike, by radiusScale_
     std::unique_ptr<CausticMap> map_;
     double radiusScale_ = 1.0;                          ///< squared
     std::uint64_t raysBefore_ = 0, emittedBefore_ = 0;  ///< before a break

@@ -8,7 +8,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCheckpoint{"pellucid checkpoint 4\n", "the checkpoint", "delete it and render from the start"};
+constexpr SealedKind kCheckpoint{"pellucid checkpoint 5\n", "the checkpoint", "delete it and render from the start"};
 
 }  // namespace
 
@@ -34,7 +34,8 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     body.put(state.causticPaths);
     body.put(state.causticRays);
     body.put(state.causticEmitted);
-    for (const std::vector<char>* block : {&state.film, &state.training, &state.radii}) body.putBlock(*block);
+    for (const std::vector<char>* block : {&state.film, &state.training, &state.radii, &state.shrunk, &state.others})
+        body.putBlock(*block);
     writeSealed(file, kCheckpoint, body.bytes());
 }
 
@@ -54,7 +55,7 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     state.causticPaths = reader.get<std::uint32_t>();
     state.causticRays = reader.get<std::uint64_t>();
     state.causticEmitted = reader.get<std::uint64_t>();
-    for (std::vector<char>* block : {&state.film, &state.training, &state.radii})
+    for (std::vector<char>* block : {&state.film, &state.training, &state.radii, &state.shrunk, &state.others})
         *block = reader.getBlock<std::vector<char>>();
     if (!reader.good()) refuseDamaged(file, kCheckpoint);
     return state;

@@ -5,6 +5,7 @@
 
 #include "pass_keys.h"
 #include "setting_choices.h"
+#include "surface_edges.h"
 
 namespace pellucid {
 
@@ -35,7 +36,7 @@ void EyeSide::forTiles(const Body& body) const {
     });
 }
 
-LayeredRadiance EyeSide::sample(Walk& walk, const Film& film, const CausticSide& caustics, PixelAt at, int number,
+LayeredRadiance EyeSide::sample(Walk& walk, const Film& film, const PhotonSides& photons, PixelAt at, int number,
                                 FirstHit& first, StringSums* strings) const {
     const std::size_t pixel = view_.pixelIndex(at.x, at.y);
     const std::uint32_t before = view_.plan.adaptive ? film.taken(pixel) : film.samples();
@@ -43,12 +44,20 @@ LayeredRadiance EyeSide::sample(Walk& walk, const Film& film, const CausticSide&
                     samplerKind(view_.request.settings.sampler));
     const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
     const CameraRay ray = view_.camera.ray(cornerOf(at) + jitter, lens);
-    return walk.fromEye(
-        {ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), caustics.kernelFootprints(at.x, at.y)},
-        sampler, &first, strings);
+    WalkRay start{ray.ray, ray.footprintAtOrigin, ray.footprintSpread};
+    start.kernelFootprints = photons.caustics.kernelFootprints(at.x, at.y);
+    start.othersFootprints = photons.others.kernelFootprints(at.x, at.y);
+    if (view_.request.settings.edges == "on") {
+        const auto leaves = [&](float footprints) {
+            return nearEdge(view_.survey.points, view_.camera.width(), at.x, at.y, footprints);
+        };
+        start.causticEdge = view_.plan.causticMap && leaves(start.kernelFootprints);
+        start.othersEdge = view_.plan.otherPhotons && leaves(start.othersFootprints);
+    }
+    return walk.fromEye(start, sampler, &first, strings);
 }
 
-void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const CausticSide& caustics, Film& film) const {
+void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonSides& photons, Film& film) const {
     const std::size_t pixel = view_.pixelIndex(at.x, at.y);
     const std::uint64_t before = walk.rays();
     const int share = film.share(pixel);
@@ -58,9 +67,14 @@ void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const Caustic
     if (film.keepsStrings()) sum.strings = &strings.ofPixel;
     for (int k = 0; k < share; ++k) {
         FirstHit first;
+        PhotonTally tally;
+        // The further samples of an iteration meet the same photons.
+        const bool counts = k == 0 && (photons.caustics.wantsTally() || view_.plan.otherPhotons);
+        walk.tallyTo(counts ? &tally : nullptr);
         strings.ofSample.clear();
         const LayeredRadiance radiance =
-            sample(walk, film, caustics, at, k, first, film.keepsStrings() ? &strings.ofSample : nullptr);
+            sample(walk, film, photons, at, k, first, film.keepsStrings() ? &strings.ofSample : nullptr);
+        if (counts) photons.caustics.met(pixel, tally.caustic), photons.others.met(pixel, tally.other);
         if (!film.admit(pixel, film.samples(), radiance)) continue;
         sum.addShare(radiance, 1.0F / static_cast<float>(share));
         firsts.addShare(first, 1.0F / static_cast<float>(share));
@@ -68,7 +82,7 @@ void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const Caustic
     film.add(pixel, film.samples(), sum, firsts, share, walk.rays() - before);
 }
 
-std::uint64_t EyeSide::pass(const TransportContext& context, const CausticSide& caustics, Film& film,
+std::uint64_t EyeSide::pass(const TransportContext& context, const PhotonSides& photons, Film& film,
                             RenderClock& clock) {
     const StageTimer timer(stage_, clock, view_.pixels.scale());
     std::vector<std::uint64_t> rays(tiles(), 0);
@@ -76,7 +90,7 @@ std::uint64_t EyeSide::pass(const TransportContext& context, const CausticSide& 
         Walk walk(context);
         Strings strings;
         forPixels([&](PixelAt at) {
-            if (view_.pixels.contains(view_.pixelIndex(at.x, at.y))) addSamples(walk, strings, at, caustics, film);
+            if (view_.pixels.contains(view_.pixelIndex(at.x, at.y))) addSamples(walk, strings, at, photons, film);
         });
         rays[tile] = walk.rays();
     });

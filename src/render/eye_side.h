@@ -10,6 +10,7 @@
 #include <pellucid/transport/walk.h>
 
 #include "caustic_side.h"
+#include "other_side.h"
 #include "prepared_view.h"
 #include "stages.h"
 
@@ -17,6 +18,12 @@ namespace pellucid {
 
 struct PixelAt {
     int x = 0, y = 0;
+};
+
+/// Whose photons eye paths look up, and who learns what they met.
+struct PhotonSides {
+    CausticSide& caustics;
+    OtherSide& others;
 };
 
 class EyeSide {
@@ -28,13 +35,13 @@ public:
     [[nodiscard]] std::optional<double> renewShares(Film& film, const CausticSide& caustics, std::uint32_t iteration);
 
     /// The samples of one iteration, all that `film` has as shares. Returns the rays, of the whole image.
-    std::uint64_t pass(const TransportContext& context, const CausticSide& caustics, Film& film, RenderClock& clock);
+    std::uint64_t pass(const TransportContext& context, const PhotonSides& photons, Film& film, RenderClock& clock);
     /// An eye path and a light path for every pixel. `splats`: of a light pass before this one.
     void bidirectionalPass(std::vector<LightSplat> splats, Film& film);
 
     /// Sample `number` of a pixel in this iteration: keyed by seed, pixel and how many went before, whatever was sampled
     /// elsewhere.
-    [[nodiscard]] LayeredRadiance sample(Walk& walk, const Film& film, const CausticSide& caustics, PixelAt at,
+    [[nodiscard]] LayeredRadiance sample(Walk& walk, const Film& film, const PhotonSides& photons, PixelAt at,
                                          int number, FirstHit& first, StringSums* strings = nullptr) const;
     /// The same, with a light path of its own number beside the eye path.
     [[nodiscard]] LayeredRadiance sample(Bidirectional& paths, const Film& film, PixelAt at,
@@ -53,7 +60,7 @@ private:
         StringSums ofPixel, ofSample;
     };
     /// All samples of one pixel in this iteration.
-    void addSamples(Walk& walk, Strings& strings, PixelAt at, const CausticSide& caustics, Film& film) const;
+    void addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonSides& photons, Film& film) const;
 
     const PreparedView& view_;
     StageRecord stage_{"eye pass"};

@@ -6,6 +6,8 @@
 
 #include <pellucid/transport/photon_trace.h>
 
+#include "other_side.h"
+
 namespace pellucid {
 
 namespace {
@@ -17,6 +19,8 @@ constexpr double kCausticBytes = 340.0;
 constexpr double kGlobalBytes = 160.0;
 /// The peaks are at different times; while global photons are made the caustic map, 70 bytes a photon, stays.
 constexpr double kGlobalShare = 0.75;
+/// Progressive photon mapping has two maps at a time.
+constexpr double kSppmShare = 0.5;
 constexpr std::uint32_t kTrialPaths = 4096;
 constexpr std::uint64_t kTrialPass = 0x6d656d6f7279ULL;
 /// The trial's photons a path are a sample; so much more is allowed for.
@@ -53,7 +57,15 @@ FittedPaths fitCausticPaths(std::uint32_t wanted, const Plan& plan, const Scene&
         traceCausticPhotons(scene, guide, {request.seed, kTrialPass, kTrialPaths}, &seen.visible, workers);
     // As if every path were useful: guiding gets better.
     const double photons = std::max(1.0, perPath(trial.photons.size(), trial.useful.size()));
-    return fit(wanted, 1.0, request, kCausticBytes, photons);
+    return fit(wanted, request.method == Method::Sppm ? kSppmShare : 1.0, request, kCausticBytes, photons);
+}
+
+FittedPaths fitOtherPaths(std::uint32_t wanted, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                          const Workers& workers) {
+    if (!limited(request)) return {wanted, 0, {}};
+    const OtherPass trial = traceOtherPhotons(scene, {request.seed, kTrialPass + 2, kTrialPaths},
+                                              visibleToOthers(scene, seen, request.settings), workers);
+    return fit(wanted, kSppmShare, request, kCausticBytes, perPath(trial.photons.size(), kTrialPaths));
 }
 
 FittedPaths fitGlobalPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene, const RenderRequest& request,

@@ -16,6 +16,10 @@ struct FittedPaths {
 
 [[nodiscard]] FittedPaths fitCausticPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene,
                                           const RenderRequest& request, const Survey& seen, const Workers& workers);
+/// The same for what progressive photon mapping keeps beside the caustics, with the other half of the memory.
+[[nodiscard]] FittedPaths fitOtherPaths(std::uint32_t wanted, const Scene& scene, const RenderRequest& request,
+                                        const Survey& seen, const Workers& workers);
+
 [[nodiscard]] FittedPaths fitGlobalPaths(std::uint32_t wanted, const Plan& plan, const Scene& scene,
                                          const RenderRequest& request, const Workers& workers);
 

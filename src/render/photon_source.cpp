@@ -9,6 +9,8 @@ namespace {
 
 /// The guide learns from each pass until it holds this many useful starts.
 constexpr std::size_t kTrainingLimit = 400'000;
+/// A pass replaces what was learnt if it has at least one useful start for so many of those.
+constexpr std::size_t kLeastOfLast = 4;
 
 }  // namespace
 
@@ -26,7 +28,9 @@ bool PhotonSource::learnsFrom(std::uint32_t iteration) const noexcept {
            isLearningIteration(iteration);
 }
 
+/// A pass of few photons knows less than what was learnt before.
 void PhotonSource::learn(std::vector<UsefulEmission> useful) {
+    if (useful.size() < training_.size() / kLeastOfLast) return;
     training_ = std::move(useful);
     makeGuide();
 }

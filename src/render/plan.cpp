@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 
 #include <pellucid/render/caustic_links.h>
+#include <pellucid/transport/caster_aim.h>
 #include <pellucid/transport/photon_trace.h>
 #include <pellucid/transport/walk.h>
 
 #include "photon_memory.h"
+#include "visible_survey.h"
 
 namespace pellucid {
 
@@ -19,11 +21,14 @@ namespace {
 constexpr std::uint32_t kPilotPaths = 60'000;
 constexpr std::uint32_t kPilotRetryFactor = 10;
 constexpr double kEnoughUseful = 400;
+/// With fewer useful photons in the first look the next one is aimed at the casters.
+constexpr double kFewUseful = 100;
 constexpr std::uint64_t kPilotRounds = 6;
 constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
 constexpr std::uint32_t kGlobalPaths = 75'000;
 /// Caustic photon paths an iteration: so many that this many are useful, between two bounds.
 constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
+constexpr double kOtherPathsPerPixel = 1.0;
 constexpr float kSpacingOfImage = 0.1F;  ///< of its shorter side: the largest radius of a record
 constexpr double kDefaultTimeCap = 120.0;
 
@@ -34,12 +39,20 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
     plan.decisions.push_back({std::move(name), std::move(choice), std::move(reason), overridden});
 }
 
+/// Of the paths that would be useful if they started without guide.
+[[nodiscard]] double shareWithoutGuide(const std::vector<UsefulEmission>& useful, std::uint32_t paths) {
+    double sum = 0.0;
+    for (const UsefulEmission& e : useful) sum += 1.0 / static_cast<double>(e.density);
+    return sum / paths;
+}
+
 /// Trains emission guiding; returns how many pilot photons were useful.
 [[nodiscard]] std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request,
                                         const Survey& seen, const Workers& workers) {
     std::vector<UsefulEmission> useful;
     std::uint32_t paths = kPilotPaths;
     double unguided = 0.0;
+    bool aimed = false;
     CasterTally tally(scene);
     for (std::uint64_t attempt = 0; attempt < kPilotRounds; ++attempt) {
         const EmissionGuide guide(scene.lights(), useful);
@@ -49,14 +62,20 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
         plan.pilotPhotons += pass.emitted;
         // Each guided look replaces the one before: its sample is the better one. Enough when it hardly finds more.
         const auto before = static_cast<double>(useful.size()), now = static_cast<double>(pass.useful.size());
+        if (now == 0.0 && attempt > 1) break;  // what it began with was better
         useful = std::move(pass.useful);
         plan.usefulShare = now / paths;
-        if (!(unguided > 0.0)) unguided = plan.usefulShare;
-        if (now == 0.0 && attempt > 0) break;
+        if (!(unguided > 0.0)) unguided = shareWithoutGuide(useful, paths);
+        if (attempt == 0 && now < kFewUseful) {
+            useful = aimAtCasters(scene, request.seed, workers);
+            aimed = true;
+            continue;
+        }
         if (now == 0.0)
             paths = kPilotPaths * kPilotRetryFactor;
-        else if (now >= kEnoughUseful && now < 1.3 * before)
+        else if (now >= kEnoughUseful && now < 1.3 * before && !aimed)
             break;
+        aimed = false;
     }
     plan.training = std::move(useful);
     plan.guideGain =
@@ -75,7 +94,7 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
                       fmt::format("no material casts caustics: roughness above {} and no glass", s.castRoughness));
     if (seen.receivers == 0) return decide(plan, "caustic map", "off", "the camera sees no diffuse surface");
     const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
-    if (useful == 0 && !isOn(s.causticMap))
+    if (useful == 0 && !isOn(s.causticMap) && request.method == Method::Photon)
         return decide(plan, "caustic map", "off",
                       fmt::format("0 of {} pilot photons arrived where the camera looks", plan.pilotPhotons));
     plan.causticMap = true;
@@ -148,6 +167,24 @@ void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, 
     if (!fitted.remark.empty()) decide(plan, "global photons", "fewer", fitted.remark, true);
 }
 
+/// Progressive photon mapping: what the caustic map does not hold.
+void planOthers(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                const Workers& workers) {
+    const int asked = request.settings.globalPhotons;
+    if (seen.receivers == 0) return decide(plan, "other photons", "off", "the camera sees no diffuse surface");
+    plan.otherPhotons = true;
+    const double wanted = kOtherPathsPerPixel * static_cast<double>(seen.points.size());
+    plan.globalPaths =
+        asked >= 0 ? static_cast<std::uint32_t>(asked) : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
+    const FittedPaths fitted = fitOtherPaths(plan.globalPaths, scene, request, seen, workers);
+    plan.globalPaths = fitted.paths;
+    decide(plan, "other photons", fmt::format("{} paths an iteration", plan.globalPaths),
+           fmt::format("{:.2g} a pixel; what came directly is sampled from the lamps",
+                       static_cast<double>(plan.globalPaths) / static_cast<double>(seen.points.size())),
+           asked >= 0);
+    if (!fitted.remark.empty()) decide(plan, "other photons", "fewer", fitted.remark, true);
+}
+
 [[nodiscard]] std::size_t pointLikeLights(const Lights& lights) {
     std::size_t count = 0;
     for (std::uint32_t l = 0; l < lights.count(); ++l) {
@@ -187,8 +224,11 @@ void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) 
     if (glass && seenLamps && !(plain && !isOn(s.split)))
         decide(plan, "lamps through glass", plan.splitLampChains ? "both ways" : "by chance",
                "the scene has glass, and lamps that can be seen", s.split != "auto");
-    plan.adaptive = isOn(s.adaptive) || (!plain && !isOff(s.adaptive) && !request.budget.samples);
-    if (!plain || plan.adaptive)
+    const bool progressive = request.method == Method::Sppm;  // each pixel counts its photons once an iteration
+    plan.adaptive = !progressive && (isOn(s.adaptive) || (!plain && !isOff(s.adaptive) && !request.budget.samples));
+    if (progressive) {
+        decide(plan, "samples of a pixel", "one an iteration", "its radius follows the photons that it meets");
+    } else if (!plain || plan.adaptive)
         decide(plan, "samples of a pixel", plan.adaptive ? "by its noise" : "alike",
                request.budget.samples ? "their number is asked for" : "learnt after iterations 4, 8, 16, ...",
                s.adaptive != "auto");
@@ -217,7 +257,7 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
         plan.blindSpots.push_back(which +
                                   "bidirectional path tracing sees none of their caustics behind perfect mirrors or "
                                   "smooth glass (E S+ D S+ L)");
-    if (request.method == Method::Photon && !plan.causticMap)
+    if ((request.method == Method::Photon || request.method == Method::Sppm) && !plan.causticMap)
         plan.blindSpots.push_back(which + "the caustic map is off and path tracing sees none of it");
 }
 
@@ -243,6 +283,9 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     if (request.method == Method::Photon) {
         planCaustics(plan, scene, request, seen, workers);
         planIndirect(plan, scene, request, seen, workers);
+    } else if (request.method == Method::Sppm) {
+        planCaustics(plan, scene, request, seen, workers);
+        planOthers(plan, scene, request, seen, workers);
     } else if (request.method == Method::Bdpt) {
         decide(plan, "light paths", fmt::format("{} a pass", camera.width() * camera.height()),
                "one for each eye path: connected to it vertex by vertex, and splatted on the whole image");
@@ -262,8 +305,8 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
         decide(plan, "photons, cache", "off", "path tracing needs none");
     }
     const bool casts = (scene.lobeKinds() & kSpecular) != kNoLobe;
-    plan.causticChains =
-        plan.cache && casts && (plan.causticMap ? isOn(request.settings.chance) : isOff(request.settings.causticMap));
+    plan.causticChains = (plan.cache || plan.otherPhotons) && casts &&
+                         (plan.causticMap ? isOn(request.settings.chance) : isOff(request.settings.causticMap));
     const bool photons = request.method != Method::Path && request.method != Method::Bdpt;
     if (photons && plan.causticLinks.empty())
         plan.causticLinks = causticLinks(scene, CasterTally(scene), seen.receivers);

@@ -16,6 +16,8 @@ namespace pellucid {
 
 /// Of the scene's radius: the largest kernel of the caustic map.
 constexpr float kMaxCausticRadius = 0.05F;
+/// Of any kernel, scene units.
+constexpr float kLeastKernelRadius = 4e-6F;
 
 /// The pixels that are rendered.
 class RenderedPixels {

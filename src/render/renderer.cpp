@@ -26,6 +26,7 @@ Renderer::Renderer(const Scene& scene, const RenderRequest& request, const Worke
       film_(view_.camera.width(), view_.camera.height()),
       source_(view_, std::exchange(view_.plan.training, {})),
       caustics_(view_),
+      others_(view_),
       indirect_(view_),
       lights_(view_),
       eyes_(view_) {
@@ -68,6 +69,7 @@ void Renderer::makeMaps() {
     if (indirect_.due(iteration_, film_, eyes_.stage(), clock_))
         indirect_.renew(caustics_.maps(source_), clock_, progress_);
     if (view_.plan.causticMap) caustics_.pass(source_, film_, iteration_);
+    if (view_.plan.otherPhotons) others_.pass(iteration_);
 }
 
 void Renderer::tracePixels() {
@@ -77,7 +79,7 @@ void Renderer::tracePixels() {
     if (view_.plan.lightPass) film_.addSplats(splats, iteration_);
     if (view_.request.method == Method::Light) return film_.countSamples(1);
     renewShares();
-    indirect_.served(eyes_.pass(eyeContext(), caustics_, film_, clock_));
+    indirect_.served(eyes_.pass(eyeContext(), photons(), film_, clock_));
 }
 
 void Renderer::renewShares() {
@@ -88,6 +90,7 @@ void Renderer::renewShares() {
 TransportContext Renderer::eyeContext() const noexcept {
     Maps maps = caustics_.maps(source_);
     indirect_.giveTo(maps);
+    others_.giveTo(maps);
     return view_.context(maps);
 }
 
@@ -97,7 +100,8 @@ Pace Renderer::pace() const {
     pace.iterations = iteration_;
     pace.samplesPerPixel = samplesPerPixel();
     pace.raysOnce = view_.pilot.rays + indirect_.rays();
-    pace.rays = pace.raysOnce + caustics_.stage().rays + lights_.stage().rays + eyes_.stage().rays;
+    pace.rays =
+        pace.raysOnce + caustics_.stage().rays + others_.stage().rays + lights_.stage().rays + eyes_.stage().rays;
     pace.seconds = clock_.elapsed();
     pace.secondsOfIteration = secondsOfIteration_;
     return pace;
@@ -128,8 +132,9 @@ RenderRecord Renderer::record() const {
     r.causticLinks = view_.plan.causticLinks;
     r.blindSpots = view_.plan.blindSpots;
     for (const StageRecord* s : {&view_.pilot, &indirect_.globalStage(), &indirect_.cacheStage(), &caustics_.stage(),
-                                 &lights_.stage(), &eyes_.stage()})
-        r.stages.push_back(withMeanEnergy(*s, view_.scene.normalisation().scale()));
+                                 &others_.stage(), &lights_.stage(), &eyes_.stage()})
+        if (s != &others_.stage() || view_.plan.otherPhotons)
+            r.stages.push_back(withMeanEnergy(*s, view_.scene.normalisation().scale()));
     r.iterations = iteration_;
     r.samplesPerPixel = samplesPerPixel();
     r.seconds = clock_.elapsed();
@@ -152,6 +157,7 @@ void Renderer::save() const {
     state.film = film_.save();
     source_.saveTo(state);
     caustics_.saveTo(state);
+    others_.saveTo(state);
     indirect_.saveTo(state);
     writeCheckpoint(view_.request.checkpoint, checkpointKey(view_.scene, view_.request, view_.camera), state);
 }
@@ -168,7 +174,8 @@ void Renderer::resume() {
     const auto state =
         readCheckpoint(view_.request.checkpoint, checkpointKey(view_.scene, view_.request, view_.camera));
     if (!state) return;
-    if (!film_.restore(state->film) || !source_.restoreFrom(*state) || !caustics_.restoreFrom(*state))
+    if (!film_.restore(state->film) || !source_.restoreFrom(*state) || !caustics_.restoreFrom(*state) ||
+        !others_.restoreFrom(*state))
         throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", view_.request.checkpoint.string(),
                     "delete it or render without --resume");
     indirect_.restoreFrom(*state, caustics_.maps(source_), clock_, progress_);

@@ -13,6 +13,7 @@
 #include "eye_side.h"
 #include "indirect_light.h"
 #include "light_side.h"
+#include "other_side.h"
 #include "pacing.h"
 #include "photon_source.h"
 #include "prepared_view.h"
@@ -39,6 +40,7 @@ private:
     void renewShares();
     void tracePixels();
     [[nodiscard]] TransportContext eyeContext() const noexcept;
+    [[nodiscard]] PhotonSides photons() noexcept { return {caustics_, others_}; }
     [[nodiscard]] SampleReplay replayBidirectional(PixelAt at) const;
     [[nodiscard]] SampleReplay replayWalk(PixelAt at);
 
@@ -57,6 +59,7 @@ private:
     Film film_;
     PhotonSource source_;
     CausticSide caustics_;
+    OtherSide others_;
     IndirectLight indirect_;
     LightSide lights_;
     EyeSide eyes_;

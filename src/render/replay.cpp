@@ -43,7 +43,7 @@ void refuseImpossible(const Camera& camera, Method method, int x, int y) {
 SampleReplay Renderer::replay(PixelAt at, std::uint32_t sample) {
     // Without maps a sample depends on nothing that was before it.
     const Plan& plan = view_.plan;
-    if (!plan.causticMap && !plan.cache && !plan.adaptive) film_.countSamples(sample);
+    if (!plan.causticMap && !plan.otherPhotons && !plan.cache && !plan.adaptive) film_.countSamples(sample);
     while (film_.samples() < sample && !progress_.stopAsked()) {
         iterate();
         tell("iterations before the sample");
@@ -77,7 +77,7 @@ SampleReplay Renderer::replayWalk(PixelAt at) {
     for (int k = 0; k < share; ++k) {
         SampleReplay one;
         walk.writeTo(&one.vertices);
-        one.radiance = eyes_.sample(walk, film_, caustics_, at, k, first);
+        one.radiance = eyes_.sample(walk, film_, photons(), at, k, first);
         const bool finite = isFinite(one.radiance.total());
         if (k > 0 && finite) continue;
         replay = std::move(one);

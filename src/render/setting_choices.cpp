@@ -25,6 +25,8 @@ PhotonKernel photonKernel(const std::string& name) {
     return name == "biweight" ? PhotonKernel::Biweight : PhotonKernel::Epanechnikov;
 }
 
+Shrink shrinkNamed(const std::string& name) { return name == "chi2" ? Shrink::ChiSquare : Shrink::Alpha; }
+
 KernelRadiusOptions radiusOptions(const Settings& settings) {
     KernelRadiusOptions options;
     options.enough *= photonsWanted(photonKernel(settings.kernel));

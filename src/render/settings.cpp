@@ -63,7 +63,7 @@ constexpr auto kParameters = std::to_array<Parameter>({
      true,
      "",
      "paths",
-     "photon paths a generation of the cache, for the global map",
+     "photon paths a generation of the cache, for the global map; sppm: an iteration, for all but caustics",
      ParameterPass::GlobalMap,
      {0.1, 8, true}},
     {"photon.radius",
@@ -88,8 +88,16 @@ constexpr auto kParameters = std::to_array<Parameter>({
      "reduction of the radius, r^2 (i + alpha)/(i + 1); 1: the radius stays and so does its bias",
      ParameterPass::CausticMap,
      {0.4, 1}},
+    {"photon.shrink", &Settings::shrink, 0, 0, false, false, "alpha|chi2", "",
+     "what makes a kernel smaller. alpha: photon.alpha, by iterations (photon) or by the photons that the pixel has "
+     "met "
+     "(sppm); chi2: a test that tells the photons in it from even light",
+     ParameterPass::CausticMap},
     {"photon.kernel", &Settings::kernel, 0, 0, false, false, "epanechnikov|uniform|cone|biweight", "",
      "how the caustic kernel weighs photons by distance; each is 1 over its disc", ParameterPass::CausticMap},
+    {"photon.edges", &Settings::edges, 0, 0, false, false, "on|off", "",
+     "near an edge or a wall an estimate is divided by the part of its kernel that lies on the surface",
+     ParameterPass::CausticMap},
     {"photon.memory", &Settings::photonMemory, 1, 1e9, true, true, "", "MB",
      "memory that photons and their maps may take: fewer paths are shot, none is dropped; auto: no limit. Scene, image "
      "and cache come on top"},

@@ -5,6 +5,8 @@
 #include <pellucid/math/hash.h>
 #include <pellucid/render/plan.h>
 
+#include "visible_survey.h"
+
 namespace pellucid {
 
 namespace {
@@ -16,23 +18,30 @@ namespace {
     return *at;
 }
 
-/// How large what is seen is on the film, and where photons are useful.
-void markVisible(Survey& s, float kernelFootprints, float largestKernel) {
+/// How large what is seen is on the film.
+void measureFootprints(Survey& s) {
     std::vector<float> footprints;
     for (const GatherPoint& p : s.points)
         if (p.valid) footprints.push_back(p.footprint);
     s.receivers = footprints.size();
-    if (footprints.empty()) return;
-    s.medianFootprint = quantile(footprints, 50);
-    const auto reach = [&](float footprint) { return std::min(kernelFootprints * footprint, largestKernel); };
-    // Cells of half the reach of all kernels but the largest few: a mark takes at most five cells along an axis.
-    const float cell = std::max({8.0F * s.medianFootprint, 0.5F * reach(quantile(footprints, 95)), 1e-4F});
-    s.visible = VisibleCells(cell);
-    for (const GatherPoint& p : s.points)
-        if (p.valid) s.visible.mark(p.position, std::min(reach(p.footprint), 2.0F * cell));
+    if (!footprints.empty()) s.medianFootprint = quantile(footprints, 50);
 }
 
 }  // namespace
+
+VisibleCells visibleWithin(const std::vector<GatherPoint>& points, float footprints, float largest) {
+    std::vector<float> widths;
+    for (const GatherPoint& p : points)
+        if (p.valid) widths.push_back(p.footprint);
+    if (widths.empty()) return VisibleCells(1.0F);
+    const auto reach = [&](float footprint) { return std::min(footprints * footprint, largest); };
+    // Cells of half the reach of all kernels but the largest few: a mark takes at most five cells along an axis.
+    const float cell = std::max({8.0F * quantile(widths, 50), 0.5F * reach(quantile(widths, 95)), 1e-4F});
+    VisibleCells visible(cell);
+    for (const GatherPoint& p : points)
+        if (p.valid) visible.mark(p.position, std::min(reach(p.footprint), 2.0F * cell));
+    return visible;
+}
 
 Survey survey(const TransportContext& context, const Camera& camera, std::uint64_t seed, float kernelFootprints,
               float largestKernel, const Workers& workers) {
@@ -51,7 +60,8 @@ Survey survey(const TransportContext& context, const Camera& camera, std::uint64
         rays[begin / 1024] = walk.rays();
     });
     s.rays = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
-    markVisible(s, kernelFootprints, largestKernel);
+    measureFootprints(s);
+    if (s.receivers > 0) s.visible = visibleWithin(s.points, kernelFootprints, largestKernel);
     return s;
 }
 

@@ -12,7 +12,8 @@
 namespace pellucid {
 namespace {
 
-constexpr std::array kMethods{Method::Photon, Method::Path, Method::Light, Method::Reference, Method::Bdpt};
+constexpr std::array kMethods{Method::Photon,    Method::Path, Method::Light,
+                              Method::Reference, Method::Bdpt, Method::Sppm};
 
 [[nodiscard]] std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts{""};

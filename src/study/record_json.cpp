@@ -98,6 +98,8 @@ std::string methodName(Method method) {
             return "reference";
         case Method::Bdpt:
             return "bdpt";
+        case Method::Sppm:
+            return "sppm";
     }
     return "photon";
 }

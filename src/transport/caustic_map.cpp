@@ -1,7 +1,9 @@
 #include <pellucid/transport/caustic_map.h>
 
 #include <pellucid/math/constants.h>
+#include <pellucid/math/frame.h>
 
+#include "packed_photon.h"
 #include "photon_tree.h"
 
 namespace pellucid {
@@ -12,11 +14,42 @@ namespace {
 constexpr float kMinNormalCosine = 0.5F;
 constexpr float kMaxPlaneDistance = 0.3F;  ///< of the radius
 
+/// Photons as the search touches them: positions under the tree, the rest beside it.
+struct Photons {
+    std::vector<PointSite> sites;
+    std::vector<PackedPhoton> packed;
+    std::vector<float> etendueDensity;  ///< empty: all alike
+    float common = 0.0F;                ///< then
+
+    explicit Photons(const PhotonList& list) : sites(list.begin(), list.end()) {
+        packed.reserve(list.size());
+        bool alike = true;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const Photon& p = list[i];
+            packed.push_back({PackedFlux(p.flux, i), OctahedralVector(p.wi), OctahedralVector(p.normal)});
+            alike = alike && p.etendueDensity == list.front().etendueDensity;
+        }
+        if (alike && !list.empty()) common = list.front().etendueDensity;
+        if (alike) return;
+        for (const Photon& p : list) etendueDensity.push_back(p.etendueDensity);
+    }
+
+    [[nodiscard]] float density(std::uint32_t i) const noexcept {
+        return etendueDensity.empty() ? common : etendueDensity[i];
+    }
+    [[nodiscard]] Photon operator[](std::size_t i) const {
+        return {sites[i].position, packed[i].wi.unit(), packed[i].normal.unit(), packed[i].flux.value(),
+                density(static_cast<std::uint32_t>(i))};
+    }
+};
+
 /// Whether a photon lies on the surface of the query.
-[[nodiscard]] bool sameSurface(const Photon& p, const glm::vec3& point, const glm::vec3& normal,
+[[nodiscard]] bool sameSurface(const glm::vec3& offset, const OctahedralVector& photonNormal, const glm::vec3& normal,
                                float radius2) noexcept {
-    if (glm::dot(p.normal, normal) < kMinNormalCosine) return false;
-    const float height = glm::dot(p.position - point, normal);
+    const glm::vec3 n = photonNormal.direction();
+    const float along = glm::dot(n, normal);
+    if (along <= 0.0F || along * along < kMinNormalCosine * kMinNormalCosine * glm::dot(n, n)) return false;
+    const float height = glm::dot(offset, normal);
     return height * height <= kMaxPlaneDistance * kMaxPlaneDistance * radius2;
 }
 
@@ -30,16 +63,17 @@ struct WithinRadius {
 };
 
 struct CountFlux : WithinRadius {
-    const PhotonList& photons;
+    const Photons& photons;
     glm::vec3 point, normal;
     FluxSums sums{};
 
-    CountFlux(const PhotonList& list, const glm::vec3& p, const glm::vec3& n, float r2)
+    CountFlux(const Photons& list, const glm::vec3& p, const glm::vec3& n, float r2)
         : WithinRadius{r2}, photons(list), point(p), normal(n) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
-        const Photon& p = photons[index];
-        if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
-        const auto flux = static_cast<double>(luminance(p.flux));
+        const PackedPhoton& p = photons.packed[index];
+        if (distance2 >= radius2 || !sameSurface(photons.sites[index].position - point, p.normal, normal, radius2))
+            return true;
+        const auto flux = static_cast<double>(luminance(p.flux.value()));
         sums.sum += flux;
         sums.squares += flux * flux;
         return true;
@@ -49,33 +83,32 @@ struct CountFlux : WithinRadius {
 /// Sums the kernel while nanoflann visits. `Shape`: of kernel_shape.
 template <class Shape>
 struct KernelSum : WithinRadius {
-    const PhotonList& photons;
-    glm::vec3 point, normal, shadingNormal;
-    const DiffuseLobe& lobe;
+    const Photons& photons;
+    const PhotonLookup& at;
+    Frame frame;  ///< for the tally
     glm::dvec3 sum{0.0};
     double inner = 0.0;  ///< luminance by the kernel of half the area
-    float radius, photonsPerEtendue;
     int count = 0;
 
-    KernelSum(const PhotonList& list, const glm::vec3& p, const glm::vec3& ng, const glm::vec3& ns,
-              const DiffuseLobe& l, float r, float perEtendue)
-        : WithinRadius{r * r},
-          photons(list),
-          point(p),
-          normal(ng),
-          shadingNormal(ns),
-          lobe(l),
-          radius(r),
-          photonsPerEtendue(perEtendue) {}
+    KernelSum(const Photons& list, const PhotonLookup& lookup)
+        : WithinRadius{lookup.radius * lookup.radius}, photons(list), at(lookup) {
+        if (at.tally != nullptr) frame = Frame(at.geometricNormal);
+    }
     bool addPoint(float distance2, std::uint32_t index) noexcept {
-        const Photon& p = photons[index];
-        if (distance2 >= radius2 || !sameSurface(p, point, normal, radius2)) return true;
+        const PackedPhoton& p = photons.packed[index];
+        const glm::vec3 offset = photons.sites[index].position - at.point;
+        if (distance2 >= radius2 || !sameSurface(offset, p.normal, at.geometricNormal, radius2)) return true;
         ++count;
         const float part = distance2 / radius2;
-        float through = lobe.b != 0.0F ? lobe.transmittance(std::max(0.0F, glm::dot(p.wi, shadingNormal))) : 1.0F;
-        if (photonsPerEtendue >= 0.0F) through *= 1.0F - chanceShare(radius, photonsPerEtendue, p.etendueDensity);
-        sum += glm::dvec3(p.flux * (Shape::shape(part) * through));
-        if (part < 0.5F) inner += static_cast<double>(luminance(p.flux) * (2.0F * Shape::shape(2.0F * part) * through));
+        const DiffuseLobe& lobe = at.lobe;
+        const Rgb flux = p.flux.value();
+        float through =
+            lobe.b != 0.0F ? lobe.transmittance(std::max(0.0F, glm::dot(p.wi.unit(), at.shadingNormal))) : 1.0F;
+        if (at.photonsPerEtendue >= 0.0F)
+            through *= 1.0F - chanceShare(at.radius, at.photonsPerEtendue, photons.density(index));
+        sum += glm::dvec3(flux * (Shape::shape(part) * through));
+        if (part < 0.5F) inner += static_cast<double>(luminance(flux) * (2.0F * Shape::shape(2.0F * part) * through));
+        if (at.tally != nullptr) at.tally->add(frame, offset, part, luminance(flux));
         return true;
     }
 };
@@ -83,50 +116,43 @@ struct KernelSum : WithinRadius {
 }  // namespace
 
 struct CausticMap::Impl {
-    PhotonList photons;
+    Photons photons;
     PhotonKernel kernel;
-    std::vector<PointSite> sites;  ///< what the tree's search touches: positions only
     PointTree<PointSite> tree;
-    Impl(PhotonList list, PhotonKernel k)
-        : photons(std::move(list)), kernel(k), sites(photons.begin(), photons.end()), tree(sites) {}
+    Impl(const PhotonList& list, PhotonKernel k, const Workers* workers)
+        : photons(list), kernel(k), tree(photons.sites, workers) {}
 };
 
-CausticMap::CausticMap(PhotonList photons, PhotonKernel kernel) {
+CausticMap::CausticMap(PhotonList photons, PhotonKernel kernel, const Workers* workers) {
     sortAlongMortonCurve(photons);
-    impl_ = std::make_unique<Impl>(std::move(photons), kernel);
+    impl_ = std::make_unique<Impl>(photons, kernel, workers);
 }
 CausticMap::~CausticMap() = default;
 CausticMap::CausticMap(CausticMap&&) noexcept = default;
 
 template <class Shape>
-Rgb CausticMap::sum(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                    const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue,
-                    int* photons) const noexcept {
-    KernelSum<Shape> result(impl_->photons, point, geometricNormal, shadingNormal, lobe, radius, photonsPerEtendue);
-    impl_->tree.search(point, result);
+PhotonEstimate CausticMap::sum(const PhotonLookup& at) const noexcept {
+    KernelSum<Shape> result(impl_->photons, at);
+    impl_->tree.search(at.point, result);
     const double perArea =
-        static_cast<double>(Shape::kScale) / (kPiD * static_cast<double>(radius) * static_cast<double>(radius));
+        static_cast<double>(Shape::kScale) / (kPiD * static_cast<double>(at.radius) * static_cast<double>(at.radius));
     const Rgb irradiance(result.sum * perArea);
-    if (blur != nullptr) *blur = 2.0F * (luminance(irradiance) - static_cast<float>(result.inner * perArea));
-    if (photons != nullptr) *photons = result.count;
-    return irradiance;
+    return {irradiance, 2.0F * (luminance(irradiance) - static_cast<float>(result.inner * perArea)), result.count};
 }
 
-Rgb CausticMap::irradiance(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                           const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue,
-                           int* photons) const noexcept {
+PhotonEstimate CausticMap::estimate(const PhotonLookup& at) const noexcept {
     using namespace kernel_shape;
     switch (impl_->kernel) {
         case PhotonKernel::Uniform:
-            return sum<Uniform>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+            return sum<Uniform>(at);
         case PhotonKernel::Cone:
-            return sum<Cone>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+            return sum<Cone>(at);
         case PhotonKernel::Biweight:
-            return sum<Biweight>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+            return sum<Biweight>(at);
         case PhotonKernel::Epanechnikov:
             break;
     }
-    return sum<Epanechnikov>(point, geometricNormal, shadingNormal, lobe, radius, blur, photonsPerEtendue, photons);
+    return sum<Epanechnikov>(at);
 }
 
 FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept {
@@ -135,7 +161,13 @@ FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometr
     return result.sums;
 }
 
-std::size_t CausticMap::size() const noexcept { return impl_->photons.size(); }
-const PhotonList& CausticMap::photons() const noexcept { return impl_->photons; }
+PhotonKernel CausticMap::kernel() const noexcept { return impl_->kernel; }
+std::size_t CausticMap::size() const noexcept { return impl_->photons.sites.size(); }
+
+PhotonList CausticMap::photons() const {
+    PhotonList list;
+    for (std::size_t i = 0; i < size(); ++i) list.push_back(impl_->photons[i]);
+    return list;
+}
 
 }  // namespace pellucid

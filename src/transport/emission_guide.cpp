@@ -1,6 +1,7 @@
 #include <pellucid/transport/emission_guide.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pellucid {
 
@@ -9,22 +10,29 @@ namespace {
 constexpr float kUniformShare = 0.1F;  ///< of the numbers, and of the choice of light (by power)
 constexpr std::size_t kMinItems = 24;  ///< a cell with fewer is not split
 constexpr int kMaxDepth = 32;
-constexpr int kBins = 8;
-/// chi^2 with 7 degrees of freedom beyond which a cell is not uniform along an axis (p = 0.003).
-constexpr float kSplitChiSquare = 21.6F;
+/// Along the choice of light there are needles to be found: one lamp among a hundred.
+constexpr int kBins = 8, kBinsForLights = 64;
+constexpr std::size_t kItemsABin = 5;
+/// Standard deviations of chi^2 above its mean beyond which a cell is not uniform along an axis (p = 0.003 of eight bins).
+constexpr float kSplitDeviation = 3.9F;
 
-/// Chi^2 of the items' positions along `axis` against uniform, in kBins bins.
+/// Chi^2 of the items' positions along `axis` against uniform, as standard deviations above its mean.
 [[nodiscard]] float nonUniformity(const std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end,
                                   std::size_t axis, float lower, float upper) {
-    std::array<float, kBins> counts{};
+    std::array<float, kBinsForLights> counts{};
+    const int bins = axis == 0 && end - begin >= kItemsABin * kBinsForLights ? kBinsForLights : kBins;
     for (std::size_t i = begin; i < end; ++i) {
         const float t = (items[i].u[axis] - lower) / (upper - lower);
-        ++counts[static_cast<std::size_t>(std::clamp(static_cast<int>(t * kBins), 0, kBins - 1))];
+        ++counts[static_cast<std::size_t>(std::clamp(static_cast<int>(t * static_cast<float>(bins)), 0, bins - 1))];
     }
-    const float expected = static_cast<float>(end - begin) / kBins;
+    const float expected = static_cast<float>(end - begin) / static_cast<float>(bins);
     float chi = 0.0F;
-    for (const float c : counts) chi += (c - expected) * (c - expected) / expected;
-    return chi;
+    for (int b = 0; b < bins; ++b) {
+        const float off = counts[static_cast<std::size_t>(b)] - expected;
+        chi += off * off / expected;
+    }
+    const auto freedom = static_cast<float>(bins - 1);
+    return (chi - freedom) / std::sqrt(2.0F * freedom);
 }
 
 }  // namespace
@@ -52,6 +60,22 @@ EmissionGuide::EmissionGuide(const Lights& lights, std::vector<UsefulEmission> u
         lightCdf_.push_back(sum);
     }
     for (double& c : lightCdf_) c /= sum;
+    learn(std::move(useful));
+}
+
+EmissionGuide::EmissionGuide(const Lights& lights, const std::vector<std::uint32_t>& only,
+                             std::vector<UsefulEmission> useful)
+    : lights_(lights), lightCdf_(lights.count(), 0.0) {
+    double power = 0.0, sum = 0.0;
+    for (const std::uint32_t l : only) power += lights.power(l);
+    for (const std::uint32_t l : only)
+        lightCdf_[l] = power > 0.0 ? lights.power(l) / power : 1.0 / static_cast<double>(only.size());
+    for (double& c : lightCdf_) c = sum += c;
+    for (double& c : lightCdf_) c /= sum;
+    learn(std::move(useful));
+}
+
+void EmissionGuide::learn(std::vector<UsefulEmission> useful) {
     if (useful.size() < kMinItems) return;
     uniformShare_ = kUniformShare;
     nodes_.emplace_back();
@@ -65,10 +89,10 @@ void EmissionGuide::build(std::uint32_t node, std::vector<UsefulEmission>& items
     std::size_t axis = 0;
     float worst = 0.0F;
     for (std::size_t a = 0; a < lower.size(); ++a) {
-        const float chi = nonUniformity(items, begin, end, a, lower[a], upper[a]);
-        if (chi > worst) worst = chi, axis = a;
+        const float deviation = nonUniformity(items, begin, end, a, lower[a], upper[a]);
+        if (deviation > worst) worst = deviation, axis = a;
     }
-    if (worst < kSplitChiSquare) return;
+    if (worst < kSplitDeviation) return;
     const float middle = 0.5F * (lower[axis] + upper[axis]);
     const auto first = items.begin() + static_cast<std::ptrdiff_t>(begin),
                last = items.begin() + static_cast<std::ptrdiff_t>(end);
@@ -139,7 +163,7 @@ std::optional<GuidedEmission> EmissionGuide::sample(Sampler& sampler) const noex
     const auto scale = static_cast<float>(1.0 / (pmf * static_cast<double>(pdf)));
     emission->flux *= scale;
     emission->pmfLight = static_cast<float>(pmf);
-    return GuidedEmission{*emission, {u, scale, {}}};
+    return GuidedEmission{*emission, {u, scale, {}, pdf}};
 }
 
 }  // namespace pellucid

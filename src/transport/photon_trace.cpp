@@ -16,6 +16,41 @@ namespace {
 
 [[nodiscard]] bool usable(const Photon& p) noexcept { return isFinite(p.flux) && !isBlack(p.flux); }
 
+/// Paths over all lobes, lights by power; calls keep(chunk, photon, how it came) at every D vertex.
+template <class Pass, class Keep>
+[[nodiscard]] Pass traceAll(const Scene& scene, const PhotonPassKey& key, const Workers& workers, const Keep& keep) {
+    const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
+    const EmissionGuide unguided(scene.lights(), {}, 0.0);
+    auto chunks = inChunks<Pass>(key.paths, workers, [&](std::uint32_t index, Pass& out) {
+        Sampler sampler(key.seed, key.pass, index);
+        const auto start = unguided.sample(sampler);
+        if (!start) return;
+        LightPath path{start->emission.ray, start->emission.flux};
+        auto arrived = Arrived::Directly;
+        for (;;) {
+            ++out.rays;
+            const auto a = arrive(scene, path, sampler);
+            if (!a) break;
+            if (receives(*a)) {
+                const Photon photon = photonOf(*a, path.flux, perPath);
+                if (usable(photon)) keep(out, photon, arrived);
+            }
+            LobeKinds by = kNoLobe;
+            if (!scatter(scene, path, *a, kAllLobes, sampler, &by)) break;
+            arrived = by == kSpecular && arrived != Arrived::Otherwise ? Arrived::OverSpecular : Arrived::Otherwise;
+        }
+        out.energy.add(path.energy, static_cast<double>(perPath));
+    });
+    Pass pass;
+    pass.emitted = key.paths;
+    gather(pass.photons, chunks, &Pass::photons);
+    for (const Pass& c : chunks) {
+        pass.rays += c.rays;
+        pass.energy.add(c.energy);
+    }
+    return pass;
+}
+
 }  // namespace
 
 CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, const PhotonPassKey& key,
@@ -77,36 +112,16 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
 }
 
 GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, const Workers& workers) {
-    const float perPath = 1.0F / static_cast<float>(std::max<std::uint32_t>(1, key.paths));
-    const EmissionGuide unguided(scene.lights(), {}, 0.0);
-    auto chunks = inChunks<GlobalPass>(key.paths, workers, [&](std::uint32_t index, GlobalPass& out) {
-        Sampler sampler(key.seed, key.pass, index);
-        const auto start = unguided.sample(sampler);
-        if (!start) return;
-        LightPath path{start->emission.ray, start->emission.flux};
-        auto arrived = Arrived::Directly;
-        for (;;) {
-            ++out.rays;
-            const auto a = arrive(scene, path, sampler);
-            if (!a) break;
-            if (receives(*a)) {
-                const Photon photon = photonOf(*a, path.flux, perPath);
-                if (usable(photon)) out.photons.push_back({photon, arrived});
-            }
-            LobeKinds by = kNoLobe;
-            if (!scatter(scene, path, *a, kAllLobes, sampler, &by)) break;
-            arrived = by == kSpecular && arrived != Arrived::Otherwise ? Arrived::OverSpecular : Arrived::Otherwise;
-        }
-        out.energy.add(path.energy, static_cast<double>(perPath));
+    return traceAll<GlobalPass>(scene, key, workers, [](GlobalPass& out, const Photon& photon, Arrived arrived) {
+        out.photons.push_back({photon, arrived});
     });
-    GlobalPass pass;
-    pass.emitted = key.paths;
-    gather(pass.photons, chunks, &GlobalPass::photons);
-    for (const GlobalPass& c : chunks) {
-        pass.rays += c.rays;
-        pass.energy.add(c.energy);
-    }
-    return pass;
+}
+
+OtherPass traceOtherPhotons(const Scene& scene, const PhotonPassKey& key, const VisibleCells& visible,
+                            const Workers& workers) {
+    return traceAll<OtherPass>(scene, key, workers, [&](OtherPass& out, const Photon& photon, Arrived arrived) {
+        if (arrived == Arrived::Otherwise && visible.seen(photon.position)) out.photons.push_back(photon);
+    });
 }
 
 }  // namespace pellucid

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <vector>
 
@@ -27,23 +28,44 @@ namespace pellucid {
     return spread(x) | spread(y) << 1U | spread(z) << 2U;
 }
 
+/// Which item stands where along the curve.
+struct MortonKey {
+    std::uint64_t code = 0;
+    std::uint32_t index = 0;
+};
+
+/// Sorts by code; equal codes keep their order. Eleven bits at a time, lowest first; digits that are all alike cost nothing.
+inline void radixSort(std::vector<MortonKey>& keys) {
+    constexpr unsigned kBits = 11, kDigits = 1U << kBits;
+    std::vector<MortonKey> other(keys.size());
+    for (unsigned shift = 0; shift < 63; shift += kBits) {
+        std::vector<std::uint32_t> start(kDigits + 1, 0);
+        const auto digit = [shift](const MortonKey& k) { return (k.code >> shift) & (kDigits - 1); };
+        for (const MortonKey& k : keys) ++start[digit(k) + 1];
+        if (std::find(start.begin(), start.end(), keys.size()) != start.end()) continue;
+        std::partial_sum(start.begin(), start.end(), start.begin());
+        for (const MortonKey& k : keys) other[start[digit(k)]++] = k;
+        keys.swap(other);
+    }
+}
+
 /// Sorts `items` (each with a `position`) along the Morton curve of their bounds; equal codes keep their order.
 template <class Item>
 void sortAlongMortonCurve(std::vector<Item>& items) {
     Bounds bounds;
     for (const Item& i : items) bounds.extend(i.position);
     const glm::dvec3 size = glm::max(glm::dvec3(bounds.diagonal()), glm::dvec3(1e-30));
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(items.size());
+    std::vector<MortonKey> order(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
         const glm::dvec3 q = (glm::dvec3(items[i].position) - glm::dvec3(bounds.lower)) / size * 2097151.0;
         order[i] = {mortonCode(static_cast<std::uint64_t>(q.x), static_cast<std::uint64_t>(q.y),
                                static_cast<std::uint64_t>(q.z)),
                     static_cast<std::uint32_t>(i)};
     }
-    std::sort(order.begin(), order.end());
+    radixSort(order);
     std::vector<Item> sorted;
     sorted.reserve(items.size());
-    for (const auto& [code, index] : order) sorted.push_back(items[index]);
+    for (const MortonKey& k : order) sorted.push_back(items[k.index]);
     items = std::move(sorted);
 }
 
@@ -54,37 +76,75 @@ struct PointSite {
     explicit PointSite(const Item& item) : position(item.position) {}
 };
 
-/// A kd-tree over items with a `position`. The items must stay where they are.
+/// A kd-tree over items with a `position`, which must stay where they are. With `workers` (null: one thread) many items get
+/// several trees, each over a stretch of their order, that are built at the same time: for items along the Morton curve few of
+/// them come near a point. How many depends on the number of items alone.
 template <class Item>
 class PointTree {
 public:
-    explicit PointTree(const std::vector<Item>& items)
-        : adaptor_{items}, tree_(3, adaptor_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {
-        if (!items.empty()) tree_.buildIndex();
+    explicit PointTree(const std::vector<Item>& items, const Workers* workers = nullptr) {
+        const std::size_t count =
+            workers == nullptr ? 1 : std::clamp<std::size_t>(items.size() / kItemsPerPart, 1, kMostParts);
+        for (std::size_t i = 0; i < count && !items.empty(); ++i)
+            parts_.push_back(std::make_unique<Part>(items, items.size() * i / count, items.size() * (i + 1) / count));
+        if (workers == nullptr)
+            for (const auto& part : parts_) part->build();
+        else
+            workers->forEach(parts_.size(), 1, [&](std::size_t i) { parts_[i]->build(); });
     }
 
     /// Runs the search of `result` (nanoflann's result-set interface: addPoint, worstDist, full, size, init).
     template <class ResultSet>
     void search(const glm::vec3& point, ResultSet& result) const {
-        if (adaptor_.items.empty()) return;
-        tree_.findNeighbors(result, &point.x, nanoflann::SearchParams(0, 0.0F, false));
+        for (const auto& part : parts_) {
+            if (parts_.size() > 1 && part->distance2(point) >= result.worstDist()) continue;
+            Shifted<ResultSet> shifted{result, static_cast<std::uint32_t>(part->adaptor.begin)};
+            part->tree.findNeighbors(shifted, &point.x, nanoflann::SearchParams(0, 0.0F, false));
+        }
     }
 
 private:
-    static constexpr std::size_t kLeafSize = 16;
+    static constexpr std::size_t kLeafSize = 16, kItemsPerPart = 1U << 15U, kMostParts = 16;
     struct Adaptor {
         const std::vector<Item>& items;
-        [[nodiscard]] std::size_t kdtree_get_point_count() const { return items.size(); }
+        std::size_t begin, end;
+        [[nodiscard]] std::size_t kdtree_get_point_count() const { return end - begin; }
         [[nodiscard]] float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-            return items[i].position[static_cast<glm::length_t>(axis)];
+            return items[begin + i].position[static_cast<glm::length_t>(axis)];
         }
         template <class Box>
         bool kdtree_get_bbox(Box&) const {
             return false;
         }
     };
-    Adaptor adaptor_;
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t> tree_;
+    /// Numbers of a part as numbers of all items.
+    template <class ResultSet>
+    struct Shifted {
+        ResultSet& all;
+        std::uint32_t begin;
+        [[nodiscard]] std::size_t size() const noexcept { return all.size(); }
+        [[nodiscard]] bool full() const noexcept { return all.full(); }
+        [[nodiscard]] float worstDist() const noexcept { return all.worstDist(); }
+        bool addPoint(float distance2, std::uint32_t index) noexcept { return all.addPoint(distance2, begin + index); }
+    };
+    struct Part {
+        Adaptor adaptor;
+        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t>
+            tree;
+        Bounds bounds;
+
+        Part(const std::vector<Item>& items, std::size_t begin, std::size_t end)
+            : adaptor{items, begin, end}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
+        void build() {
+            tree.buildIndex();
+            for (std::size_t i = adaptor.begin; i < adaptor.end; ++i) bounds.extend(adaptor.items[i].position);
+        }
+        [[nodiscard]] float distance2(const glm::vec3& p) const noexcept {
+            const glm::vec3 away = glm::max(glm::max(bounds.lower - p, p - bounds.upper), glm::vec3(0.0F));
+            return glm::dot(away, away);
+        }
+    };
+    std::vector<std::unique_ptr<Part>> parts_;
 };
 
 }  // namespace pellucid

@@ -5,9 +5,6 @@
 #include <limits>
 
 #include <pellucid/math/constants.h>
-#include <pellucid/transport/caustic_map.h>
-#include <pellucid/transport/irradiance_cache.h>
-#include <pellucid/transport/radiance_map.h>
 
 #include "kind_choice.h"
 #include "medium.h"
@@ -32,9 +29,6 @@ enum VertexDimension : std::uint64_t {
     kRoulette,
     kCorner
 };
-/// Near a corner the map's blur would show: a gather ray shorter than u x this many look-up radii goes on instead.
-constexpr float kCornerRadii = 8.0F;
-
 /// The kind of lobe that made a direction, and what that makes of the throughput. No kind: nothing came this way.
 struct Onward {
     LobeKinds kind = kNoLobe;
@@ -57,66 +51,6 @@ struct Onward {
 }
 
 }  // namespace
-
-/// Hands the D lobe to the maps. Returns kDiffuse when path tracing has to carry it on.
-LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sampler, FirstHit* first) noexcept {
-    const Maps& maps = context_.maps;
-    const DiffuseLobe& lobe = vertex.bsdf.diffuse();
-    const glm::vec3& normal = vertex.bsdf.shadingNormal();
-    const glm::vec3& position = vertex.hit.point.position;
-    const Rgb outgoing =
-        lobe.reflectance * (kInvPi * lobe.transmittance(std::min(1.0F, std::fabs(glm::dot(vertex.wo, normal)))));
-    if (state.gathering) {
-        if (maps.global != nullptr) {
-            const auto found = maps.global->find(position, vertex.bsdf.geometricNormal());
-            const float u = sampler.next1D();
-            const bool nearCorner = found && state.chainEmpty && vertex.hit.distance < u * kCornerRadii * found->radius;
-            if (found && !nearCorner) {
-                state.radiance.add(state.ledger.pathAfter(kDiffuse).open(),
-                                   state.throughput * outgoing * found->irradiance);
-                return kNoLobe;
-            }
-            // Near a corner all but the caustics, which path tracing hardly finds, goes on.
-            if (found && maps.causticsApart()) {
-                PathString path = state.ledger.pathAfter(kDiffuse);
-                path.pass(kSpecular);
-                state.radiance.add(path, state.throughput * outgoing * found->caustic);
-                state.causticServed = true;
-            }
-        }
-        return kDiffuse;
-    }
-    if (maps.caustic != nullptr) {
-        const float radius =
-            glm::clamp(state.ray.kernelFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
-        state.causticServed = true;
-        state.sharedNext = maps.causticsShared();
-        state.kernelRadius = radius;
-        float blur = 0.0F;
-        int photons = 0;
-        const Rgb irradiance =
-            maps.caustic->irradiance(position, vertex.bsdf.geometricNormal(), normal, lobe, radius, &blur,
-                                     state.sharedNext ? maps.photonsPerEtendue : -1.0F, &photons);
-        if (first != nullptr && state.vertices == 1)
-            first->kernelRadius = radius, first->kernelPhotons = static_cast<float>(photons);
-        PathString path = state.ledger.pathAfter(kDiffuse);
-        path.pass(kSpecular);
-        const Rgb seen = state.throughput * outgoing * irradiance;
-        state.radiance.add(path, seen);
-        state.radiance.shared += luminance(seen);
-        state.radiance.blur += luminance(state.throughput * outgoing) * blur;
-    }
-    if (maps.cache != nullptr) {
-        if (const auto cached = maps.cache->lookup(position, normal, &rays_)) {
-            state.radiance.add(state.ledger.pathAfter(kDiffuse).open(),
-                               state.throughput * outgoing * cached->through(lobe));
-            state.chainsNext = maps.causticChains;
-            return state.chainsNext ? kDiffuse : kNoLobe;
-        }
-        ++cacheMisses_;  // gathers once: the walk simply goes on
-    }
-    return kDiffuse;
-}
 
 /// Samples the next direction among `sampled` lobes, with roulette. False: the walk ends.
 bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {

@@ -1,6 +1,6 @@
 /// The photon tree: build, and look-ups that accumulate within the search against lists of the k nearest and of all within a
-/// radius, with the same nanoflann tree under each. A look-up meets about kWanted photons. Bytes a photon are what the heap
-/// holds after the build. 1e7 photons with `--large` (2 GB).
+/// radius, with the same nanoflann tree under each, and against a grid of cells of two radii made by a counting sort. A look-up
+/// meets about kWanted photons. Bytes a photon are what the heap holds after the build. 1e7 photons with `--large` (2 GB).
 #include <malloc.h>
 
 #include <algorithm>
@@ -113,9 +113,8 @@ void accumulate(benchmark::State& state) {
     const float radius = radiusFor(count);
     const DiffuseLobe lobe{Rgb(1.0F)};
     Queries queries;
-    float blur = 0.0F;
     for ([[maybe_unused]] auto _ : state)
-        benchmark::DoNotOptimize(map.irradiance(queries.next(), kUp, kUp, lobe, radius, &blur));
+        benchmark::DoNotOptimize(map.estimate({queries.next(), kUp, kUp, lobe, radius}));
     state.SetItemsProcessed(state.iterations());
 }
 
@@ -156,6 +155,101 @@ void nearest(benchmark::State& state) {
     state.SetItemsProcessed(state.iterations());
 }
 
+/// The tree and the grid with the very same work for each photon that they meet. `spread`: of the radii of look-ups, as pixels
+/// near and far have them: a quarter, a half, once and twice the radius that the grid was made for.
+struct SumWithin {
+    const PhotonList& photons;
+    ListSum list;
+    void init() noexcept {}
+    [[nodiscard]] std::size_t size() const noexcept { return 0; }
+    [[nodiscard]] bool full() const noexcept { return true; }
+    [[nodiscard]] float worstDist() const noexcept { return list.radius2; }
+    bool addPoint(float distance2, std::uint32_t index) noexcept {
+        if (distance2 < list.radius2) list.add(photons[index], distance2);
+        return true;
+    }
+};
+
+[[nodiscard]] float radiusOf(std::uint32_t query, float radius, bool spread) {
+    return spread ? radius * std::ldexp(0.25F, static_cast<int>(query % 4)) : radius;
+}
+
+void treeWithin(benchmark::State& state, bool spread) {
+    const auto count = static_cast<std::size_t>(state.range(0));
+    const PlainTree& map = treeOf(count);
+    Queries queries;
+    std::uint32_t i = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        const float r = radiusOf(i++, radiusFor(count), spread);
+        SumWithin sum{map.photons, {queries.next(), r * r}};
+        map.tree.search(sum.list.point, sum);
+        benchmark::DoNotOptimize(sum.list);
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+
+/// Cells in the plane of the floor, each a stretch of the photons.
+class Grid {
+public:
+    Grid(const PhotonList& from, float cell) : cell_(cell), side_(static_cast<int>(std::ceil(1.0F / cell))) {
+        start_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_) + 1, 0);
+        for (const Photon& p : from) ++start_[cellOf(p.position) + 1];
+        for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+        std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+        photons_.resize(from.size());
+        for (const Photon& p : from) photons_[next[cellOf(p.position)]++] = p;
+    }
+    void sum(ListSum& list, float radius) const noexcept {
+        const int x0 = column(list.point.x - radius), x1 = column(list.point.x + radius),
+                  y0 = column(list.point.y - radius), y1 = column(list.point.y + radius);
+        for (int y = y0; y <= y1; ++y) {
+            const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(side_);
+            for (std::uint32_t i = start_[row + static_cast<std::size_t>(x0)],
+                               end = start_[row + static_cast<std::size_t>(x1) + 1];
+                 i < end; ++i) {
+                const glm::vec3 offset = photons_[i].position - list.point;
+                const float distance2 = glm::dot(offset, offset);
+                if (distance2 < list.radius2) list.add(photons_[i], distance2);
+            }
+        }
+    }
+
+private:
+    [[nodiscard]] int column(float v) const noexcept { return std::clamp(static_cast<int>(v / cell_), 0, side_ - 1); }
+    [[nodiscard]] std::size_t cellOf(const glm::vec3& p) const noexcept {
+        return static_cast<std::size_t>(column(p.y)) * static_cast<std::size_t>(side_) +
+               static_cast<std::size_t>(column(p.x));
+    }
+    float cell_;
+    int side_;
+    std::vector<std::uint32_t> start_;
+    PhotonList photons_;
+};
+
+void gridBuild(benchmark::State& state) {
+    const auto count = static_cast<std::size_t>(state.range(0));
+    const PhotonList photons = photonsOnAFloor(count);
+    for ([[maybe_unused]] auto _ : state) {
+        const Grid grid(photons, 2.0F * radiusFor(count));
+        benchmark::DoNotOptimize(grid);
+    }
+    state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+
+void gridWithin(benchmark::State& state, bool spread) {
+    const auto count = static_cast<std::size_t>(state.range(0));
+    const Grid grid(photonsOnAFloor(count), 2.0F * radiusFor(count));
+    Queries queries;
+    std::uint32_t i = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        const float r = radiusOf(i++, radiusFor(count), spread);
+        ListSum list{queries.next(), r * r};
+        grid.sum(list, r);
+        benchmark::DoNotOptimize(list);
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+
 void listWithin(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));
     const PlainTree& map = treeOf(count);
@@ -177,6 +271,11 @@ BENCHMARK(build)->Arg(100'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 BENCHMARK(accumulate)->Arg(100'000)->Arg(1'000'000);
 BENCHMARK(listWithin)->Arg(100'000)->Arg(1'000'000);
 BENCHMARK(nearest)->Arg(100'000)->Arg(1'000'000);
+BENCHMARK(gridBuild)->Arg(100'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(treeWithin, one_radius, false)->Arg(100'000)->Arg(1'000'000);
+BENCHMARK_CAPTURE(gridWithin, one_radius, false)->Arg(100'000)->Arg(1'000'000);
+BENCHMARK_CAPTURE(treeWithin, spread_radii, true)->Arg(100'000)->Arg(1'000'000);
+BENCHMARK_CAPTURE(gridWithin, spread_radii, true)->Arg(100'000)->Arg(1'000'000);
 
 }  // namespace
 }  // namespace pellucid

@@ -74,13 +74,11 @@ TEST_P(Kernels, AnEvenFieldIsEvenAndWithoutBias) {
     const CausticMap map = field(GetParam().first, 0.0F);
     const glm::vec3 up(0.0F, 0.0F, 1.0F);
     for (const float radius : {0.3F, 0.7F}) {
-        float blur = 1.0F;
-        int photons = 0;
-        const Rgb e =
-            map.irradiance({0.013F, -0.021F, 0.0F}, up, up, DiffuseLobe{Rgb(1.0F)}, radius, &blur, -1.0F, &photons);
-        EXPECT_NEAR(photons, kPiD * static_cast<double>(radius * radius) / (0.008 * 0.008), 100.0);
-        EXPECT_NEAR(e.g, 2.0F, 0.008F) << radius;
-        EXPECT_NEAR(blur, 0.0F, 0.03F) << radius;
+        const DiffuseLobe lobe{Rgb(1.0F)};
+        const PhotonEstimate e = map.estimate({{0.013F, -0.021F, 0.0F}, up, up, lobe, radius});
+        EXPECT_NEAR(e.photons, kPiD * static_cast<double>(radius * radius) / (0.008 * 0.008), 100.0);
+        EXPECT_NEAR(e.irradiance.g, 2.0F, 0.008F) << radius;
+        EXPECT_NEAR(e.blur, 0.0F, 0.03F) << radius;
     }
 }
 
@@ -89,10 +87,10 @@ TEST_P(Kernels, BiasOfACurvedFieldAndItsEstimateAreTheSecondMoment) {
     const CausticMap map = field(GetParam().first, kCurvature);
     const glm::vec3 up(0.0F, 0.0F, 1.0F);
     const double bias = static_cast<double>(kCurvature * kRadius * kRadius) * GetParam().second;
-    float blur = 0.0F;
-    const Rgb e = map.irradiance({0.0F, 0.0F, 0.0F}, up, up, DiffuseLobe{Rgb(1.0F)}, kRadius, &blur);
-    EXPECT_NEAR(static_cast<double>(e.g) - 2.0, bias, 0.03 * bias);
-    EXPECT_NEAR(static_cast<double>(blur), bias, 0.08 * bias);
+    const DiffuseLobe lobe{Rgb(1.0F)};
+    const PhotonEstimate e = map.estimate({{0.0F, 0.0F, 0.0F}, up, up, lobe, kRadius});
+    EXPECT_NEAR(static_cast<double>(e.irradiance.g) - 2.0, bias, 0.03 * bias);
+    EXPECT_NEAR(static_cast<double>(e.blur), bias, 0.08 * bias);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Kernels,

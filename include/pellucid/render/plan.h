@@ -32,8 +32,9 @@ struct GenerationSize {
 
 struct Plan {
     bool causticMap = false, globalMap = false, cache = false, lightPass = false;
+    bool otherPhotons = false;       ///< progressive photon mapping: a map of them beside the caustics'
     std::uint32_t causticPaths = 0;  ///< an iteration
-    std::uint32_t globalPaths = 0;   ///< for the first generation of the cache
+    std::uint32_t globalPaths = 0;   ///< for the first generation of the cache; of an iteration for the other photons
     bool adaptiveRadius = true;      ///< of the caustic kernel, pixel by pixel
     float causticFootprints = 2.5F;  ///< kernel radius of the first iteration where it is not
     /// The caustic kernel's area shrinks by (i + alpha) / (i + 1) in iteration i.

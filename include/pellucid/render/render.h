@@ -20,7 +20,7 @@ namespace pellucid {
 
 class Scene;
 
-enum class Method { Photon, Path, Light, Reference, Bdpt };
+enum class Method { Photon, Path, Light, Reference, Bdpt, Sppm };
 
 /// The first of the limits that is reached ends the render. All empty: error 0.05 with the plan's cap on time.
 struct Budget {

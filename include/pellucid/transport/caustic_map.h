@@ -1,11 +1,14 @@
-/// The caustic photon map: L S+ D photons, and the irradiance that they make at a point. Bias enters here: the kernel blurs
-/// what is smaller than its radius (zero where the irradiance is linear), and loses light within a radius of an edge.
+/// A photon map, and the irradiance that its photons make at a point: of the caustics, L S+ D photons; by progressive photon
+/// mapping also of all others that did not come directly. Bias enters here: the kernel blurs what is smaller than its radius
+/// (zero where the irradiance is linear), and loses light within a radius of an edge.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 
+#include <pellucid/base/parallel.h>
 #include <pellucid/surface/bsdf.h>
+#include <pellucid/transport/kernel_tally.h>
 #include <pellucid/transport/photon.h>
 #include <pellucid/transport/photon_kernel.h>
 
@@ -26,35 +29,52 @@ struct FluxSums {
     return 1.0F / (1.0F + kPiSquared * radius * radius * photonsPerEtendue * etendueDensity);
 }
 
+struct PhotonLookup {
+    glm::vec3 point, geometricNormal, shadingNormal;
+    const DiffuseLobe& lobe;
+    float radius;
+    float photonsPerEtendue = -1.0F;  ///< >= 0: each photon has the share that chanceShare() leaves to it
+    KernelTally* tally = nullptr;     ///< receives what was met; null: nobody asks
+};
+
+struct PhotonEstimate {
+    Rgb irradiance{0.0F};  ///< W m^-2
+    /// The kernel's bias, in luminance: that of any of the kernels grows as r^2, so twice the difference of this kernel's
+    /// estimate and that of the same shape over half its area, from the same photons.
+    float blur = 0.0F;
+    int photons = 0;
+};
+
 class CausticMap {
 public:
-    explicit CausticMap(PhotonList photons, PhotonKernel kernel = PhotonKernel::Epanechnikov);
+    /// `workers` build it faster (null: the calling thread alone); its sums do not depend on how many they are.
+    explicit CausticMap(PhotonList photons, PhotonKernel kernel = PhotonKernel::Epanechnikov,
+                        const Workers* workers = nullptr);
     ~CausticMap();
     CausticMap(CausticMap&&) noexcept;
 
-    /// Irradiance (W m^-2) from the photons within `radius`, each weighted by the lobe's transmittance T for its direction:
+    /// Irradiance from the photons within the radius, each weighted by the lobe's transmittance T for its direction:
     /// E = sum dPhi T(wi.n) K(d/r) / (pi r^2), by default Epanechnikov's kernel K = 2 (1 - d^2/r^2). [Jensen1996], [Silverman1986]
-    /// `blur` receives an estimate of the kernel's bias, in luminance: the bias of any of the kernels grows as r^2, so twice the
-    /// difference of this kernel's estimate and that of the same shape over half its area, from the same photons.
-    /// `photonsPerEtendue` >= 0: each photon has the share that chanceShare() leaves to it. `photons` receives how many there were.
+    [[nodiscard]] PhotonEstimate estimate(const PhotonLookup& at) const noexcept;
+
     [[nodiscard]] Rgb irradiance(const glm::vec3& point, const glm::vec3& geometricNormal,
-                                 const glm::vec3& shadingNormal, const DiffuseLobe& lobe, float radius,
-                                 float* blur = nullptr, float photonsPerEtendue = -1.0F,
-                                 int* photons = nullptr) const noexcept;
+                                 const glm::vec3& shadingNormal, const DiffuseLobe& lobe, float radius) const noexcept {
+        return estimate({point, geometricNormal, shadingNormal, lobe, radius}).irradiance;
+    }
 
     /// What arrived within `radius` on the side of the normal.
     [[nodiscard]] FluxSums fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal,
                                       float radius) const noexcept;
 
+    [[nodiscard]] PhotonKernel kernel() const noexcept;
     [[nodiscard]] std::size_t size() const noexcept;
-    [[nodiscard]] const PhotonList& photons() const noexcept;
+    /// As the map keeps them: 20 bytes each.
+    [[nodiscard]] PhotonList photons() const;
 
 private:
     struct Impl;
     template <class Shape>
-    [[nodiscard]] Rgb sum(const glm::vec3& point, const glm::vec3& geometricNormal, const glm::vec3& shadingNormal,
-                          const DiffuseLobe& lobe, float radius, float* blur, float photonsPerEtendue,
-                          int* photons) const noexcept;
+    [[nodiscard]] PhotonEstimate sum(const PhotonLookup& at) const noexcept;
     std::unique_ptr<Impl> impl_;
 };
 

@@ -22,6 +22,7 @@ struct UsefulEmission {
     EmissionNumbers5 u{};
     float weight = 0.0F;
     glm::vec3 landed{0.0F};  ///< where it was first of use
+    float density = 1.0F;    ///< it was drawn with, against no guide
 };
 
 struct GuidedEmission {
@@ -35,9 +36,16 @@ public:
     /// Without useful emissions the guide is the unguided density: lights by power, uniform numbers. `equalShare` of the
     /// choice of light goes to each lamp alike (all emissive triangles together count as one): a weak one is found too.
     EmissionGuide(const Lights& lights, std::vector<UsefulEmission> useful, double equalShare = kEqualShare);
+    /// Some of the lights alone, by power.
+    EmissionGuide(const Lights& lights, const std::vector<std::uint32_t>& only, std::vector<UsefulEmission> useful);
 
     /// Uses the sampler's next four dimensions.
     [[nodiscard]] std::optional<GuidedEmission> sample(Sampler& sampler) const noexcept;
+
+    /// The part of the first number that chooses this light.
+    [[nodiscard]] std::array<double, 2> choosing(std::uint32_t light) const noexcept {
+        return {light > 0 ? lightCdf_[light - 1] : 0.0, lightCdf_[light]};
+    }
 
     [[nodiscard]] std::size_t cells() const noexcept { return (nodes_.size() + 1) / 2; }
 
@@ -51,6 +59,7 @@ private:
     };
     [[nodiscard]] float density(const EmissionNumbers5& u) const noexcept;
     void warp(EmissionNumbers5& u) const noexcept;
+    void learn(std::vector<UsefulEmission> useful);
     void build(std::uint32_t node, std::vector<UsefulEmission>& items, std::size_t begin, std::size_t end,
                const EmissionNumbers5& lower, const EmissionNumbers5& upper, int depth);
 

@@ -1,4 +1,4 @@
-/// The two photon passes. Whole paths only, a fixed number of them; photons stand in the order of their paths, so that the
+/// The photon passes. Whole paths only, a fixed number of them; photons stand in the order of their paths, so that the
 /// list is the same at any number of threads.
 #pragma once
 
@@ -35,6 +35,13 @@ struct GlobalPass {
     EnergyBalance energy;  ///< of the pass, scene units
 };
 
+/// What progressive photon mapping shows beside the caustics.
+struct OtherPass {
+    PhotonList photons;
+    std::uint64_t rays = 0, emitted = 0;
+    EnergyBalance energy;  ///< of the pass, scene units
+};
+
 /// L S+ D photons by guided emission. `visible`: photons outside of it are dropped, and not useful (null: all are). `tally`
 /// counts what became of the paths (null: nobody asks).
 [[nodiscard]] CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, const PhotonPassKey& key,
@@ -43,5 +50,9 @@ struct GlobalPass {
 
 /// All photons that arrive at D vertices, lights by power.
 [[nodiscard]] GlobalPass traceGlobalPhotons(const Scene& scene, const PhotonPassKey& key, const Workers& workers);
+
+/// Of the same paths those photons that came neither directly nor over S alone, where the camera looks.
+[[nodiscard]] OtherPass traceOtherPhotons(const Scene& scene, const PhotonPassKey& key, const VisibleCells& visible,
+                                          const Workers& workers);
 
 }  // namespace pellucid

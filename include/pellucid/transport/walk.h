@@ -8,6 +8,7 @@
 
 #include <pellucid/math/sampler.h>
 #include <pellucid/scene/scene.h>
+#include <pellucid/transport/kernel_tally.h>
 #include <pellucid/transport/lamp_chains.h>
 #include <pellucid/transport/path_classes.h>
 #include <pellucid/transport/walk_trace.h>
@@ -15,6 +16,7 @@
 namespace pellucid {
 
 class CausticMap;
+struct PhotonEstimate;
 class RadianceMap;
 class IrradianceCache;
 
@@ -27,8 +29,11 @@ struct Maps {
     float photonsPerEtendue = 0.0F;
     const RadianceMap* global = nullptr;
     const IrradianceCache* cache = nullptr;
+    /// Progressive photon mapping: at the first D vertex all photons that came neither directly nor over S alone. Nothing is
+    /// traced behind it.
+    const CausticMap* others = nullptr;
     float causticRadiusMin = 0.0F;  ///< in scene units
-    float causticRadiusMax = 1.0F;
+    float causticRadiusMax = 1.0F, othersRadiusMax = 1.0F;
 
     /// Whether light over S alone is kept out of cache and gather.
     [[nodiscard]] bool causticsApart() const noexcept { return caustic != nullptr || causticChains; }
@@ -90,6 +95,8 @@ struct WalkRay {
     float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;  ///< as in CameraRay
     Rgb absorption{0.0F};                                    ///< of the medium, per scene unit
     float kernelFootprints = 1.0F;                           ///< radius of the caustic kernel, in pixel footprints
+    float othersFootprints = 1.0F;                           ///< of that of all other photons
+    bool causticEdge = false, othersEdge = false;  ///< the kernel may leave its surface: look how much of it does
 };
 
 class Walk {
@@ -111,6 +118,9 @@ public:
 
     /// From now on every vertex is written down there (null: no longer).
     void writeTo(WalkTrace* trace) noexcept { trace_ = trace; }
+
+    /// From now on what look-ups of photons meet is added there (null: no longer).
+    void tallyTo(PhotonTally* tally) noexcept { tally_ = tally; }
 
     [[nodiscard]] std::uint64_t rays() const noexcept { return rays_ + lampChains_.rays(); }
     [[nodiscard]] std::uint64_t cacheMisses() const noexcept { return cacheMisses_; }
@@ -141,7 +151,13 @@ private:
     const TransportContext& context_;
     bool holes_;
     LampChains lampChains_;
+    void addOthers(State& state, const Vertex& vertex, const Rgb& outgoing, float turn) noexcept;
+    /// The part of a kernel that lies on the surface, where `edge` says that it may leave it.
+    [[nodiscard]] float massOf(bool edge, const CausticMap& map, const PhotonEstimate& found, const Vertex& vertex,
+                               float radius, float turn) noexcept;
+
     WalkTrace* trace_ = nullptr;
+    PhotonTally* tally_ = nullptr;
     std::uint64_t rays_ = 0, cacheMisses_ = 0;
 };
 
