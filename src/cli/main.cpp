@@ -39,7 +39,8 @@ int fail(const Error& error) {
 }  // namespace
 
 int main(int count, char** values) {
-    const auto started = Clock::now();
+    const auto started =
+        Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(processAge()));
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write, with its own message
     exitOnInterrupts();             // until a command has something to save
     failOnFullFiles();

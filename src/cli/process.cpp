@@ -2,6 +2,10 @@
 
 #include <atomic>
 #include <csignal>
+#include <ctime>
+#include <fstream>
+#include <sstream>
+#include <string>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -39,6 +43,26 @@ void failOnFullFiles() { std::signal(SIGXFSZ, SIG_IGN); }
 void catchInterrupts() { handleInterrupts(onInterrupt); }
 
 bool interruptAsked() noexcept { return interrupted.load(std::memory_order_relaxed); }
+
+/// Field 22 of /proc/self/stat: ticks after the machine was started. [proc(5)]
+double processAge() {
+    constexpr double kLongestStart = 1.0;  // an older process has been something else before, or another clock counts
+    constexpr int kFieldsBetween = 19;     // after the name in parentheses, which may hold anything
+    std::ifstream file("/proc/self/stat");
+    std::string text;
+    std::getline(file, text);
+    const std::size_t name = text.rfind(')');
+    if (name == std::string::npos) return 0.0;
+    std::istringstream fields(text.substr(name + 1));
+    std::string skipped;
+    for (int i = 0; i < kFieldsBetween; ++i) fields >> skipped;
+    double ticks = 0.0;
+    timespec now{};
+    if (!(fields >> ticks) || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0.0;
+    const double seconds = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+    const double age = seconds - ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
+    return age > 0.0 && age < kLongestStart ? age : 0.0;
+}
 
 std::uint64_t peakRssBytes() noexcept {
     rusage usage{};

@@ -16,6 +16,9 @@ void failOnFullFiles();
 void catchInterrupts();
 [[nodiscard]] bool interruptAsked() noexcept;
 
+/// Seconds since this process was made, before its libraries were loaded; 0 where the system does not tell.
+[[nodiscard]] double processAge();
+
 /// Largest resident memory so far.
 [[nodiscard]] std::uint64_t peakRssBytes() noexcept;
 

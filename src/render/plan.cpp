@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <pellucid/transport/walk.h>
 
 #include "photon_memory.h"
+#include "stages.h"
 #include "visible_survey.h"
 
 namespace pellucid {
@@ -24,6 +26,10 @@ constexpr double kEnoughUseful = 400;
 /// With fewer useful photons in the first look the next one is aimed at the casters.
 constexpr double kFewUseful = 100;
 constexpr std::uint64_t kPilotRounds = 6;
+/// Of a budget of time, for the pilot: then it makes do with what it found.
+constexpr double kPilotShare = 0.03;
+/// Photons of a budget of fewer seconds are fewer in proportion, down to a share: a first picture is worth more than a fine one.
+constexpr double kShortBudget = 2.5, kLeastOfShort = 0.2;
 constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
 constexpr std::uint32_t kGlobalPaths = 75'000;
 /// Caustic photon paths an iteration: so many that this many are useful, between two bounds.
@@ -37,6 +43,12 @@ constexpr double kDefaultTimeCap = 120.0;
 
 void decide(Plan& plan, std::string name, std::string choice, std::string reason, bool overridden = false) {
     plan.decisions.push_back({std::move(name), std::move(choice), std::move(reason), overridden});
+}
+
+[[nodiscard]] std::uint32_t withinShortBudget(double paths, const Budget& budget) {
+    const double left = budget.seconds.value_or(kShortBudget) - budget.startedSecondsAgo;
+    const double share = budget.seconds ? std::clamp(left / kShortBudget, kLeastOfShort, 1.0) : 1.0;
+    return static_cast<std::uint32_t>(share * paths);
 }
 
 /// Of the paths that would be useful if they started without guide.
@@ -54,6 +66,8 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
     double unguided = 0.0;
     bool aimed = false;
     CasterTally tally(scene);
+    const WallClock::time_point began = WallClock::now();
+    const std::optional<double>& budget = request.budget.seconds;
     for (std::uint64_t attempt = 0; attempt < kPilotRounds; ++attempt) {
         const EmissionGuide guide(scene.lights(), useful);
         CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible,
@@ -75,6 +89,7 @@ void decide(Plan& plan, std::string name, std::string choice, std::string reason
             paths = kPilotPaths * kPilotRetryFactor;
         else if (now >= kEnoughUseful && now < 1.3 * before && !aimed)
             break;
+        if (now > 0.0 && budget && secondsSince(began) > kPilotShare * *budget) break;
         aimed = false;
     }
     plan.training = std::move(useful);
@@ -102,7 +117,7 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
         std::clamp(kUsefulPerPixel / std::max(plan.usefulShare, 1e-6), kPathsPerPixel, kMostPathsPerPixel);
     const auto wanted = static_cast<double>(seen.points.size()) * perPixel;
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
-                                              : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
+                                              : withinShortBudget(std::clamp(wanted, 2e4, 4e6), request.budget);
     const FittedPaths fitted = fitCausticPaths(plan.causticPaths, plan, scene, request, seen, workers);
     plan.causticPaths = fitted.paths;
     plan.mostCausticPaths = fitted.most;
@@ -142,7 +157,8 @@ void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, 
         return;
     }
     plan.cache = plan.globalMap = true;
-    plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons) : kGlobalPaths;
+    plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons)
+                                            : withinShortBudget(kGlobalPaths, request.budget);
     const FittedPaths fitted = fitGlobalPaths(plan.globalPaths, plan, scene, request, workers);
     plan.globalPaths = fitted.paths;
     plan.mostGlobalPaths = fitted.most;
