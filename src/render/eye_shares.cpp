@@ -50,9 +50,10 @@ std::optional<double> EyeSide::renewShares(Film& film, const CausticSide& causti
         limits.mostMean = static_cast<float>(std::min<double>(
             limits.mostMean, kMostOfBudget * static_cast<double>(*b.rays) / std::max(1.0, eyeRays * scale)));
     limits.fixedPhotons = !view_.plan.causticMap || view_.request.settings.causticPhotons >= 0;
-    const SampleShares chosen =
-        sampleShares(noise, view_.camera.width(), view_.camera.height(), limits, hashCombine(view_.request.seed, n));
+    const SampleShares chosen = sampleShares(noise, film.shares(), view_.camera.width(), view_.camera.height(), limits,
+                                             hashCombine(view_.request.seed, n));
     film.setShares(chosen.ofPixel);
+    film.setWeight(film.weight() * chosen.lessNoise);
     if (limits.fixedPhotons) return std::nullopt;
     return chosen.photons;
 }

@@ -36,7 +36,20 @@ void EyeSide::forTiles(const Body& body) const {
     });
 }
 
-LayeredRadiance EyeSide::sample(Walk& walk, const Film& film, const PhotonSides& photons, PixelAt at, int number,
+PixelKernels EyeSide::kernelsAt(const PhotonSides& photons, PixelAt at) const {
+    PixelKernels kernels;
+    kernels.caustic.footprints = photons.caustics.kernelFootprints(at.x, at.y);
+    kernels.others.footprints = photons.others.kernelFootprints(at.x, at.y);
+    if (view_.request.settings.edges != "on") return kernels;
+    const auto leaves = [&](const PixelKernel& kernel) {
+        return nearEdge(view_.survey.points, view_.camera.width(), at.x, at.y, kernel.footprints);
+    };
+    kernels.caustic.edge = view_.plan.causticMap && leaves(kernels.caustic);
+    kernels.others.edge = view_.plan.otherPhotons && leaves(kernels.others);
+    return kernels;
+}
+
+LayeredRadiance EyeSide::sample(Walk& walk, const Film& film, const PixelKernels& kernels, PixelAt at, int number,
                                 FirstHit& first, StringSums* strings) const {
     const std::size_t pixel = view_.pixelIndex(at.x, at.y);
     const std::uint32_t before = view_.plan.adaptive ? film.taken(pixel) : film.samples();
@@ -44,17 +57,8 @@ LayeredRadiance EyeSide::sample(Walk& walk, const Film& film, const PhotonSides&
                     samplerKind(view_.request.settings.sampler));
     const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
     const CameraRay ray = view_.camera.ray(cornerOf(at) + jitter, lens);
-    WalkRay start{ray.ray, ray.footprintAtOrigin, ray.footprintSpread};
-    start.kernelFootprints = photons.caustics.kernelFootprints(at.x, at.y);
-    start.othersFootprints = photons.others.kernelFootprints(at.x, at.y);
-    if (view_.request.settings.edges == "on") {
-        const auto leaves = [&](float footprints) {
-            return nearEdge(view_.survey.points, view_.camera.width(), at.x, at.y, footprints);
-        };
-        start.causticEdge = view_.plan.causticMap && leaves(start.kernelFootprints);
-        start.othersEdge = view_.plan.otherPhotons && leaves(start.othersFootprints);
-    }
-    return walk.fromEye(start, sampler, &first, strings);
+    return walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), kernels}, sampler, &first,
+                        strings);
 }
 
 void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonSides& photons, Film& film) const {
@@ -65,6 +69,7 @@ void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonS
     FirstHit firsts;
     strings.ofPixel.clear();
     if (film.keepsStrings()) sum.strings = &strings.ofPixel;
+    const PixelKernels kernels = kernelsAt(photons, at);
     for (int k = 0; k < share; ++k) {
         FirstHit first;
         PhotonTally tally;
@@ -73,7 +78,7 @@ void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonS
         walk.tallyTo(counts ? &tally : nullptr);
         strings.ofSample.clear();
         const LayeredRadiance radiance =
-            sample(walk, film, photons, at, k, first, film.keepsStrings() ? &strings.ofSample : nullptr);
+            sample(walk, film, kernels, at, k, first, film.keepsStrings() ? &strings.ofSample : nullptr);
         if (counts) photons.caustics.met(pixel, tally.caustic), photons.others.met(pixel, tally.other);
         if (!film.admit(pixel, film.samples(), radiance)) continue;
         sum.addShare(radiance, 1.0F / static_cast<float>(share));

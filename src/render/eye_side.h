@@ -39,9 +39,11 @@ public:
     /// An eye path and a light path for every pixel. `splats`: of a light pass before this one.
     void bidirectionalPass(std::vector<LightSplat> splats, Film& film);
 
+    /// How a pixel's samples of this iteration look up photons.
+    [[nodiscard]] PixelKernels kernelsAt(const PhotonSides& photons, PixelAt at) const;
     /// Sample `number` of a pixel in this iteration: keyed by seed, pixel and how many went before, whatever was sampled
     /// elsewhere.
-    [[nodiscard]] LayeredRadiance sample(Walk& walk, const Film& film, const PhotonSides& photons, PixelAt at,
+    [[nodiscard]] LayeredRadiance sample(Walk& walk, const Film& film, const PixelKernels& kernels, PixelAt at,
                                          int number, FirstHit& first, StringSums* strings = nullptr) const;
     /// The same, with a light path of its own number beside the eye path.
     [[nodiscard]] LayeredRadiance sample(Bidirectional& paths, const Film& film, PixelAt at,

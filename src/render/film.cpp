@@ -19,15 +19,17 @@ void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance
     if (!admit(pixel, iteration, radiance)) return;
     Pixel& p = pixels_[pixel];
     const Rgb total = radiance.total();
+    const double w = terms_.weight;
     for (std::size_t l = 0; l < kPathClasses; ++l)
-        for (glm::length_t c = 0; c < 3; ++c) p.layer[l][c] += static_cast<double>(radiance.layer[l][c]);
+        for (glm::length_t c = 0; c < 3; ++c) p.layer[l][c] += w * static_cast<double>(radiance.layer[l][c]);
     if ((iteration & 1U) != 0)
-        for (glm::length_t c = 0; c < 3; ++c) p.half[c] += static_cast<double>(total[c]);
+        for (glm::length_t c = 0; c < 3; ++c) p.half[c] += w * static_cast<double>(total[c]);
     const double y = static_cast<double>(luminance(total));
-    p.square += y * y;
+    p.squareSum += w * w * y;
+    p.squareSquare += w * w * y * y;
     const double shared = static_cast<double>(radiance.shared), own = y - shared;
-    p.blur += static_cast<double>(radiance.blur);
-    if ((iteration & 1U) != 0) p.blurHalf += static_cast<double>(radiance.blur);
+    p.blur += w * static_cast<double>(radiance.blur);
+    if ((iteration & 1U) != 0) p.blurHalf += w * static_cast<double>(radiance.blur);
     p.sharedSum += shared;
     p.sharedSquare += shared * shared;
     p.eyeSum += samples * own;
@@ -44,12 +46,19 @@ void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance
     if (radiance.strings == nullptr || stringSlots_.empty()) return;
     for (const auto& [path, value] : *radiance.strings) {
         double* sum = &strings_[(static_cast<std::size_t>(slotOf_[path.code()]) * pixels_.size() + pixel) * 3];
-        for (glm::length_t c = 0; c < 3; ++c) sum[c] += static_cast<double>(value[c]);
+        for (glm::length_t c = 0; c < 3; ++c) sum[c] += w * static_cast<double>(value[c]);
     }
 }
 
 void Film::setShares(const std::vector<std::uint8_t>& shares) noexcept {
     for (std::size_t i = 0; i < pixels_.size(); ++i) pixels_[i].share = shares[i];
+}
+
+std::vector<std::uint8_t> Film::shares() const {
+    std::vector<std::uint8_t> shares;
+    shares.reserve(pixels_.size());
+    for (const Pixel& p : pixels_) shares.push_back(p.share);
+    return shares;
 }
 
 std::uint64_t Film::taken() const noexcept {
@@ -113,7 +122,7 @@ std::vector<char> Film::save() const {
         bytes.insert(bytes.end(), static_cast<const char*>(from), static_cast<const char*>(from) + size);
     };
     bytes.reserve(savedSize());
-    put(&samples_, sizeof samples_);
+    put(&terms_, sizeof terms_);
     put(&splatPasses_, sizeof splatPasses_);
     put(pixels_.data(), pixels_.size() * sizeof(Pixel));
     for (const auto* sums : {&strings_, &splatStrings_}) put(sums->data(), sums->size() * sizeof(double));
@@ -121,7 +130,7 @@ std::vector<char> Film::save() const {
 }
 
 std::size_t Film::savedSize() const noexcept {
-    return sizeof samples_ + sizeof splatPasses_ + pixels_.size() * sizeof(Pixel) +
+    return sizeof terms_ + sizeof splatPasses_ + pixels_.size() * sizeof(Pixel) +
            (strings_.size() + splatStrings_.size()) * sizeof(double);
 }
 
@@ -132,7 +141,7 @@ bool Film::restore(const std::vector<char>& bytes) {
         if (size > 0) std::memcpy(to, from, size);  // an empty vector has no address
         from += size;
     };
-    take(&samples_, sizeof samples_);
+    take(&terms_, sizeof terms_);
     take(&splatPasses_, sizeof splatPasses_);
     take(static_cast<void*>(pixels_.data()), pixels_.size() * sizeof(Pixel));
     for (auto* sums : {&strings_, &splatStrings_}) take(sums->data(), sums->size() * sizeof(double));

@@ -8,9 +8,8 @@ namespace pellucid {
 
 Rgb Film::mean(const Pixel& p, int layer) const noexcept {
     Rgb value(0.0F);
-    const double n = std::max<std::uint32_t>(1, samples_);
     for (glm::length_t c = 0; c < 3; ++c) {
-        double v = p.layer[layer][c] / n;
+        double v = p.layer[layer][c] / terms_.divisor();
         if (splatPasses_ > 0) v += p.splat[layer][c] / splatPasses_;
         value[c] = static_cast<float>(v);
     }
@@ -45,53 +44,58 @@ double Film::indirectShare() const noexcept {
     return sum / static_cast<double>(std::max<std::size_t>(1, pixels_.size()));
 }
 
-/// Of the pixel's mean luminance: sample variance over the number of samples, of the eye's samples and of the passes'
-/// splats, which are taken as independent of each other.
+/// Of the pixel's mean luminance: of a weighted mean sum w^2 (y - mean)^2 / (sum w)^2, times n / (n - 1); and that of the
+/// passes' splats, which are taken as independent of the rest.
 double Film::variance(const Pixel& p) const noexcept {
-    const auto ofMean = [](const double(&layers)[kPathClasses][3], double square, double count) {
+    const auto meanOf = [](const double(&layers)[kPathClasses][3], double divisor) {
         double sum = 0.0;
         for (const auto& l : layers) sum += 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2];
-        const double m = sum / count;
-        return std::max(0.0, square / count - m * m) / std::max(1.0, count - 1.0);
+        return sum / divisor;
     };
-    return ofMean(p.layer, p.square, std::max<std::uint32_t>(1, samples_)) +
-           ofMean(p.splat, p.splatSquare, std::max<std::uint32_t>(1, splatPasses_));
+    const double n = terms_.count, w = terms_.divisor(), m = meanOf(p.layer, w);
+    const double spread = p.squareSquare - 2.0 * m * p.squareSum + m * m * terms_.squares;
+    const double passes = std::max<std::uint32_t>(1, splatPasses_), s = meanOf(p.splat, passes);
+    return std::max(0.0, spread) / (w * w) * (n / std::max(1.0, n - 1.0)) +
+           std::max(0.0, p.splatSquare / passes - s * s) / std::max(1.0, passes - 1.0);
 }
 
 /// An iteration's mean of k samples has the variance of a sample over k: so k (mean - expectation)^2 has that of a sample.
 PixelNoise Film::noise(std::size_t pixel) const noexcept {
     const Pixel& p = pixels_[pixel];
-    const double n = samples_, free = std::max(1.0, n - 1.0), taken = std::max<std::uint32_t>(1, p.taken);
+    const double n = terms_.count, free = std::max(1.0, n - 1.0), taken = std::max<std::uint32_t>(1, p.taken);
     PixelNoise noise;
     noise.eyeVariance = static_cast<float>(std::max(0.0, p.eyeSquare - p.eyeSum * p.eyeSum / taken) / free);
     noise.photonVariance =
         static_cast<float>(std::max(0.0, p.sharedSquare - p.sharedSum * p.sharedSum / std::max(1.0, n)) / free);
     noise.luminance = static_cast<float>(p.eyeSum / taken + p.sharedSum / std::max(1.0, n));
     noise.rays = static_cast<float>(static_cast<double>(p.rays) / taken);
-    const double odd = std::max<std::uint32_t>(1, samples_ / 2),
-                 even = std::max<std::uint32_t>(1, samples_ - samples_ / 2);
-    noise.blur2 = static_cast<float>(p.blurHalf / odd * ((p.blur - p.blurHalf) / even));
+    noise.blur2 = static_cast<float>(blur2(p));
     noise.inside = p.taken > 0;
     return noise;
 }
 
+/// Square of the kernels' bias, as the product of what odd and even iterations say.
+double Film::blur2(const Pixel& p) const noexcept {
+    const double odd = terms_.odd, even = terms_.sum - terms_.odd;
+    return odd > 0.0 && even > 0.0 ? p.blurHalf / odd * ((p.blur - p.blurHalf) / even) : 0.0;
+}
+
 double Film::relativeBlur2() const noexcept {
-    const double odd = samples_ / 2, even = samples_ - samples_ / 2;
-    if (odd < 1.0) return 0.0;
+    if (terms_.count < 2) return 0.0;
     double meanValue = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < pixels_.size(); ++i) meanValue += luminanceOf(pixels_[i]);
     meanValue /= static_cast<double>(pixels_.size());
     const double floor = std::max(0.01 * meanValue * meanValue, 1e-300);
     for (const Pixel& p : pixels_) {
         const double value = luminanceOf(p);
-        sum += p.blurHalf / odd * ((p.blur - p.blurHalf) / even) / (value * value + floor);
+        sum += blur2(p) / (value * value + floor);
     }
     return std::max(0.0, sum / static_cast<double>(pixels_.size()));
 }
 
 double Film::relativeNoise2() const noexcept {
-    const double odd = samples_ / 2, even = samples_ - samples_ / 2;
-    if (odd < 1.0) return 1.0;
+    const double odd = terms_.odd, even = terms_.sum - terms_.odd;
+    if (terms_.count < 2) return 1.0;
     const double oddPasses = splatPasses_ / 2, evenPasses = splatPasses_ - splatPasses_ / 2;
     double meanValue = 0.0;
     std::vector<double> value(pixels_.size() * 3), difference(pixels_.size() * 3);

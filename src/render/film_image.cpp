@@ -24,8 +24,7 @@ const std::vector<std::string>& auxiliaryLayers() noexcept {
 
 double Film::stringMean(std::size_t slot, std::size_t pixel, std::size_t channel) const noexcept {
     const std::size_t i = (slot * pixels_.size() + pixel) * 3 + channel;
-    return strings_[i] / std::max<std::uint32_t>(1, samples_) +
-           splatStrings_[i] / std::max<std::uint32_t>(1, splatPasses_);
+    return strings_[i] / terms_.divisor() + splatStrings_[i] / std::max<std::uint32_t>(1, splatPasses_);
 }
 
 std::vector<std::pair<std::size_t, std::string>> Film::litStrings() const {
@@ -60,7 +59,7 @@ Image Film::image(const std::vector<std::string>& layers) const {
     const auto strings = litStrings();
     for (const auto& [slot, name] : strings) addRgb(name);
     Image image(width_, height_, names);
-    const auto n = static_cast<float>(std::max<std::uint32_t>(1, samples_));
+    const auto n = static_cast<float>(std::max<std::uint32_t>(1, terms_.count));
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
         const Pixel& p = pixels_[i];
         Rgb total(0.0F);

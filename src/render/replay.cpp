@@ -74,10 +74,11 @@ SampleReplay Renderer::replayWalk(PixelAt at) {
     FirstHit first;
     SampleReplay replay;
     const int share = film_.share(view_.pixelIndex(at.x, at.y));
+    const PixelKernels kernels = eyes_.kernelsAt(photons(), at);
     for (int k = 0; k < share; ++k) {
         SampleReplay one;
         walk.writeTo(&one.vertices);
-        one.radiance = eyes_.sample(walk, film_, photons(), at, k, first);
+        one.radiance = eyes_.sample(walk, film_, kernels, at, k, first);
         const bool finite = isFinite(one.radiance.total());
         if (k > 0 && finite) continue;
         replay = std::move(one);

@@ -1,8 +1,9 @@
 /// Adaptive sampling in image space: how many eye samples each pixel takes in every iteration to come.
 ///
-/// A pixel's value is the plain mean over iterations of the mean of its samples in each, and a number of samples is fixed
-/// from iterations before it alone: so each term, and the mean, is unbiased. (Weighing terms by their number of samples
-/// would not be: pixels that were bright by chance would take more samples and count them.)
+/// A pixel's value is a mean over iterations of the mean of its samples in each, and a number of samples is fixed from
+/// iterations before it alone: so each term is unbiased. Iterations are weighed by the inverse of the variance that their
+/// samples and photons give the image, one weight for all pixels. (Weighing a pixel's terms by its own numbers of samples
+/// would bias it: pixels that were bright by chance would take more samples and count them.)
 ///
 /// With v the variance of one eye sample, c its rays, L the pixel's luminance and e2 the floor of relmse, the sum over pixels
 /// of v / (k (L^2 + e2)) is least for a given number of rays when k ~ sqrt(v / (c (L^2 + e2))). The photons' noise P is
@@ -27,10 +28,11 @@ struct ShareLimits {
 struct SampleShares {
     std::vector<std::uint8_t> ofPixel;  ///< samples in an iteration, at least 1
     double photons = 1.0;               ///< photon paths, as a multiple of those of the iterations so far
+    double lessNoise = 1.0;  ///< how many times less variance than an iteration of `before` it gives the image
 };
 
-/// `seed` keys the rounding.
-[[nodiscard]] SampleShares sampleShares(const std::vector<PixelNoise>& noise, int width, int height,
-                                        const ShareLimits& limits, std::uint64_t seed);
+/// `before`: samples of each pixel in the last iteration. `seed` keys the rounding.
+[[nodiscard]] SampleShares sampleShares(const std::vector<PixelNoise>& noise, const std::vector<std::uint8_t>& before,
+                                        int width, int height, const ShareLimits& limits, std::uint64_t seed);
 
 }  // namespace pellucid

@@ -31,13 +31,13 @@ float Walk::massOf(bool edge, const CausticMap& map, const PhotonEstimate& found
 void Walk::addOthers(State& state, const Vertex& vertex, const Rgb& outgoing, float turn) noexcept {
     const Maps& maps = context_.maps;
     const float radius =
-        glm::clamp(state.ray.othersFootprints * vertex.footprint, maps.causticRadiusMin, maps.othersRadiusMax);
+        glm::clamp(state.ray.kernels.others.footprints * vertex.footprint, maps.causticRadiusMin, maps.othersRadiusMax);
     const DiffuseLobe lobe = vertex.bsdf.diffuse();
     const PhotonEstimate found =
         maps.others->estimate({vertex.hit.point.position, vertex.bsdf.geometricNormal(), vertex.bsdf.shadingNormal(),
                                lobe, radius, -1.0F, tally_ != nullptr ? &tally_->other : nullptr});
     const Rgb reflected =
-        state.throughput * outgoing / massOf(state.ray.othersEdge, *maps.others, found, vertex, radius, turn);
+        state.throughput * outgoing / massOf(state.ray.kernels.others.edge, *maps.others, found, vertex, radius, turn);
     const Rgb seen = reflected * found.irradiance;
     state.radiance.add(state.ledger.pathAfter(kDiffuse).open(), seen);
     state.radiance.shared += luminance(seen);
@@ -72,10 +72,10 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         }
         return kDiffuse;
     }
-    const float turn = state.ray.causticEdge || state.ray.othersEdge ? sampler.next1D() : 0.0F;
+    const float turn = state.ray.kernels.caustic.edge || state.ray.kernels.others.edge ? sampler.next1D() : 0.0F;
     if (maps.caustic != nullptr) {
-        const float radius =
-            glm::clamp(state.ray.kernelFootprints * vertex.footprint, maps.causticRadiusMin, maps.causticRadiusMax);
+        const float radius = glm::clamp(state.ray.kernels.caustic.footprints * vertex.footprint, maps.causticRadiusMin,
+                                        maps.causticRadiusMax);
         state.causticServed = true;
         state.sharedNext = maps.causticsShared();
         state.kernelRadius = radius;
@@ -86,8 +86,8 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
             first->kernelRadius = radius, first->kernelPhotons = static_cast<float>(found.photons);
         PathString path = state.ledger.pathAfter(kDiffuse);
         path.pass(kSpecular);
-        const Rgb reflected =
-            state.throughput * outgoing / massOf(state.ray.causticEdge, *maps.caustic, found, vertex, radius, turn);
+        const Rgb reflected = state.throughput * outgoing /
+                              massOf(state.ray.kernels.caustic.edge, *maps.caustic, found, vertex, radius, turn);
         const Rgb seen = reflected * found.irradiance;
         state.radiance.add(path, seen);
         state.radiance.shared += luminance(seen);

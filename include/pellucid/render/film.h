@@ -42,13 +42,18 @@ public:
              int samples = 1, std::uint64_t rays = 0) noexcept;
     /// Adds the splats of a light pass, in their order. `pass` counts light passes.
     void addSplats(const std::vector<LightSplat>& splats, std::uint32_t pass) noexcept;
+    /// Of the iterations to come in every pixel's mean. A weight of all pixels, from the noise of all: a pixel's own noise
+    /// moves it by about one part in their number, and that is the bias of the mean.
+    void setWeight(double weight) noexcept { terms_.weight = weight; }
+    [[nodiscard]] double weight() const noexcept { return terms_.weight; }
     /// Tells that an iteration is over: every pixel has got one more term (splats count apart).
-    void countSamples(std::uint32_t samples) noexcept { samples_ += samples; }
+    void countSamples(std::uint32_t samples) noexcept { terms_.add(samples); }
 
     /// How many samples `pixel` takes in an iteration to come, and how many it has taken.
     [[nodiscard]] int share(std::size_t pixel) const noexcept { return pixels_[pixel].share; }
     [[nodiscard]] std::uint32_t taken(std::size_t pixel) const noexcept { return pixels_[pixel].taken; }
     void setShares(const std::vector<std::uint8_t>& shares) noexcept;
+    [[nodiscard]] std::vector<std::uint8_t> shares() const;
     [[nodiscard]] std::uint64_t taken() const noexcept;
     /// What `pixel` has shown of its noise. From two iterations on.
     [[nodiscard]] PixelNoise noise(std::size_t pixel) const noexcept;
@@ -57,7 +62,7 @@ public:
     [[nodiscard]] int height() const noexcept { return height_; }
     [[nodiscard]] std::size_t pixels() const noexcept { return pixels_.size(); }
     /// Iterations: terms of every pixel's mean.
-    [[nodiscard]] std::uint32_t samples() const noexcept { return samples_; }
+    [[nodiscard]] std::uint32_t samples() const noexcept { return terms_.count; }
 
     /// The mean: R G B, the four layers, and the auxiliary `layers` asked for.
     [[nodiscard]] Image image(const std::vector<std::string>& layers) const;
@@ -80,34 +85,53 @@ public:
     [[nodiscard]] bool restore(const std::vector<char>& bytes);
 
 private:
+    /// The terms of every pixel's mean, one an iteration.
+    struct Terms {
+        std::uint32_t count = 0;
+        double weight = 1.0;  ///< of those to come
+        double sum = 0.0, odd = 0.0,
+               squares = 0.0;  ///< of the weights so far: all, of odd iterations; of their squares
+
+        void add(std::uint32_t terms) noexcept {
+            odd += weight * ((count + terms) / 2 - count / 2);
+            count += terms;
+            sum += weight * terms;
+            squares += weight * weight * terms;
+        }
+        /// To divide sums by, also where there is nothing yet.
+        [[nodiscard]] double divisor() const noexcept { return count > 0 ? sum : 1.0; }
+    };
     struct Pixel {
-        double layer[kPathClasses][3] = {};
-        double half[3] = {};  ///< of odd iterations
+        double layer[kPathClasses][3] = {};  ///< weighed, as all sums but those that say otherwise
+        double half[3] = {};                 ///< of odd iterations
         double splat[kPathClasses][3] = {};
         double splatHalf[3] = {};
-        double square = 0.0;  ///< of the luminance of an iteration's mean
+        double squareSum = 0.0,
+               squareSquare = 0.0;  ///< of the luminance of an iteration's mean, by the weight's square
         /// Of the luminance without what photons gave, weighed by the number of samples.
         double eyeSum = 0.0, eyeSquare = 0.0;
-        double sharedSum = 0.0, sharedSquare = 0.0;  ///< of the luminance that photons gave
+        double sharedSum = 0.0, sharedSquare = 0.0;  ///< of the luminance that photons gave, unweighed
         double blur = 0.0, blurHalf = 0.0;
         std::uint64_t rays = 0;
         std::uint32_t taken = 0;
         std::uint8_t share = 1;
-        double splatSquare = 0.0;  ///< of the luminance of a pass's splats
-        float splatPass = 0.0F;    ///< while a pass is added
-        float albedo[3] = {}, normal[3] = {};
+        double splatSquare = 0.0;              ///< of the luminance of a pass's splats
+        float splatPass = 0.0F;                ///< while a pass is added
+        float albedo[3] = {}, normal[3] = {};  ///< these unweighed
         float depth = 0.0F, radius = 0.0F, photons = 0.0F;
         std::uint32_t nonfinite = 0, firstNonfinite = 0;
     };
     [[nodiscard]] Rgb mean(const Pixel& p, int layer) const noexcept;
     [[nodiscard]] double luminanceOf(const Pixel& p) const noexcept;
     [[nodiscard]] double variance(const Pixel& p) const noexcept;
+    [[nodiscard]] double blur2(const Pixel& p) const noexcept;
     [[nodiscard]] std::size_t savedSize() const noexcept;
     [[nodiscard]] double stringMean(std::size_t slot, std::size_t pixel, std::size_t channel) const noexcept;
     /// Strings that have radiance somewhere, as (slot, name).
     [[nodiscard]] std::vector<std::pair<std::size_t, std::string>> litStrings() const;
     int width_, height_;
-    std::uint32_t samples_ = 0, splatPasses_ = 0;
+    Terms terms_;
+    std::uint32_t splatPasses_ = 0;
     std::vector<Pixel> pixels_;
     std::vector<PathString> stringSlots_;  ///< empty: not kept
     std::array<std::int16_t, PathString::kCodes> slotOf_{};

@@ -89,14 +89,21 @@ struct GatherPoint {
     float directLuminance = 0.0F;
 };
 
+struct PixelKernel {
+    float footprints = 1.0F;  ///< radius
+    bool edge = false;        ///< it may leave its surface: look how much of it does
+};
+/// With what an eye path looks up photons: of the caustic map, and of that of all others.
+struct PixelKernels {
+    PixelKernel caustic, others;
+};
+
 /// A ray that carries a footprint and the medium it is in.
 struct WalkRay {
     Ray ray;
     float footprintAtOrigin = 0.0F, footprintSpread = 0.0F;  ///< as in CameraRay
     Rgb absorption{0.0F};                                    ///< of the medium, per scene unit
-    float kernelFootprints = 1.0F;                           ///< radius of the caustic kernel, in pixel footprints
-    float othersFootprints = 1.0F;                           ///< of that of all other photons
-    bool causticEdge = false, othersEdge = false;  ///< the kernel may leave its surface: look how much of it does
+    PixelKernels kernels = {};
 };
 
 class Walk {
