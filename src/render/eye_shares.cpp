@@ -11,15 +11,17 @@ namespace pellucid {
 namespace {
 
 /// Iterations before pixels are told apart by their noise.
-constexpr std::uint32_t kUniformIterations = 4;
+constexpr std::uint32_t kUniformIterations = 2;
 /// Samples of a pixel in those, beside a caustic map: its photons take their time once an iteration, and what is noisy in
 /// the first seconds comes from the eye. Of short budgets of time one: an iteration more is worth more.
 constexpr std::uint8_t kFirstShare = 2;
 constexpr double kShortBudget = 3.0;
+/// Of the samples an iteration, from one decision to the next.
+constexpr double kMostGrowth = 2.0;
 /// Time of a ray of the caustic photons, with what is made of them, in units of an eye ray's; as measured.
 constexpr double kPhotonRayTime = 1.75;
-/// Of a budget, for one iteration: else it would be overrun.
-constexpr double kMostOfBudget = 0.04;
+/// Of a budget, for one iteration: else it would be overrun; or as many seconds, which may be.
+constexpr double kMostOfBudget = 0.04, kMostSeconds = 0.6;
 
 }  // namespace
 
@@ -40,12 +42,15 @@ std::optional<double> EyeSide::renewShares(Film& film, const CausticSide& causti
     ShareLimits limits;
     if (view_.plan.causticMap)
         limits.photonRays = kPhotonRayTime * static_cast<double>(caustics.raysSoFar()) / ((iteration + 1) * scale);
+    // Step by step, as what is known of the noise grows.
+    const double soFar = scale * static_cast<double>(film.taken()) / (n * static_cast<double>(film.pixels()));
+    limits.mostMean = std::min(limits.mostMean, static_cast<float>(kMostGrowth * soFar));
     const Budget& b = view_.request.budget;
     const double once = stage_.seconds * static_cast<double>(film.pixels()) /
                         (scale * static_cast<double>(std::max<std::uint64_t>(1, film.taken())));
     if (b.seconds)
-        limits.mostMean =
-            static_cast<float>(std::min<double>(limits.mostMean, kMostOfBudget * *b.seconds / std::max(1e-9, once)));
+        limits.mostMean = static_cast<float>(std::min<double>(
+            limits.mostMean, std::max(kMostOfBudget * *b.seconds, kMostSeconds) / std::max(1e-9, once)));
     if (b.rays)
         limits.mostMean = static_cast<float>(std::min<double>(
             limits.mostMean, kMostOfBudget * static_cast<double>(*b.rays) / std::max(1.0, eyeRays * scale)));

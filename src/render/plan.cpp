@@ -246,7 +246,7 @@ void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) 
         decide(plan, "samples of a pixel", "one an iteration", "its radius follows the photons that it meets");
     } else if (!plain || plan.adaptive)
         decide(plan, "samples of a pixel", plan.adaptive ? "by its noise" : "alike",
-               request.budget.samples ? "their number is asked for" : "learnt after iterations 4, 8, 16, ...",
+               request.budget.samples ? "their number is asked for" : "learnt after iterations 2, 4, 8, 16, ...",
                s.adaptive != "auto");
 }
 
