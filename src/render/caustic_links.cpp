@@ -34,7 +34,7 @@ public:
         if (receivers_ == 0) return "no receiver: the camera sees no diffuse surface";
         if (f.hit == 0 && behind(tally_.lamps()[lamp], caster)) return "behind the lamp: it shines the other way";
         if (f.hit == 0 && outsideCone(tally_.lamps()[lamp], caster)) return "outside of the spot's cone";
-        if (emitted == 0) return "no pilot path began at this lamp";
+        if (emitted == 0) return std::string(kNoPilotPath);
         if (f.hit == 0)
             return fmt::format(
                 "not met: {:.3g} % of the lamp's paths leave the scene, the rest meet other surfaces first",
@@ -119,9 +119,17 @@ std::vector<CausticLink> causticLinks(const Scene& scene, const CasterTally& tal
     for (std::size_t l = 0; l < tally.lamps().size(); ++l)
         for (std::size_t c = 0; c < tally.casters().size(); ++c) {
             const CasterFate f = tally.fate(l, c);
-            ranked.push_back({{tally.lamps()[l].name, tally.casters()[c].name, tally.emitted(l), f.hit, f.deposited,
-                               f.useful, reasons.of(l, c)},
-                              tally.lamps()[l].power});
+            CausticLink link;
+            link.lamp = tally.lamps()[l].name;
+            link.caster = tally.casters()[c].name;
+            link.lampIndex = l;
+            link.casterIndex = c;
+            link.emitted = tally.emitted(l);
+            link.hit = f.hit;
+            link.deposited = f.deposited;
+            link.useful = f.useful;
+            link.reason = reasons.of(l, c);
+            ranked.push_back({std::move(link), tally.lamps()[l].power});
         }
     std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
         if (a.link.useful != b.link.useful) return a.link.useful > b.link.useful;
@@ -142,6 +150,9 @@ std::vector<CausticLink> shortened(const std::vector<CausticLink>& links, std::s
         rest.hit += links[i].hit;
         rest.deposited += links[i].deposited;
         rest.useful += links[i].useful;
+        rest.watched = rest.watched || links[i].watched;
+        rest.stored += links[i].stored;
+        rest.used += links[i].used;
     }
     few.push_back(std::move(rest));
     return few;

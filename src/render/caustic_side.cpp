@@ -23,7 +23,7 @@ constexpr std::uint32_t kCorrectRadiiAfter = 8;
 
 }  // namespace
 
-CausticSide::CausticSide(const PreparedView& view) : view_(view) {
+CausticSide::CausticSide(const PreparedView& view) : view_(view), use_(view.scene) {
     if (view.plan.causticMap && view.plan.adaptiveRadius)
         radii_ = std::make_unique<KernelRadii>(view.camera.width(), view.camera.height(),
                                                radiusOptions(view.request.settings));
@@ -34,18 +34,25 @@ CausticSide::CausticSide(const PreparedView& view) : view_(view) {
 
 void CausticSide::pass(PhotonSource& source, const Film& film, std::uint32_t iteration) {
     const StageTimer timer(stage_);
-    CausticPass pass =
-        traceCausticPhotons(view_.scene, source.guide(), {view_.request.seed, kCausticPass + iteration, source.paths()},
-                            &view_.survey.visible, view_.workers);
+    watching_ = iteration == 0;
+    const PhotonPassKey key{view_.request.seed, kCausticPass + iteration, source.paths(),
+                            watching_ ? CausticUse::kWatchedPaths : 0};
+    CausticPass pass = traceCausticPhotons(view_.scene, source.guide(), key, &view_.survey.visible, view_.workers,
+                                           watching_ ? &use_.tally() : nullptr);
     addPhotonPass(stage_, pass);
     stage_.photonsStored += pass.photons.size();
     map_ = std::make_unique<CausticMap>(std::move(pass.photons), photonKernel(view_.request.settings.kernel),
                                         &view_.workers);
+    if (watching_) use_.stored(std::move(pass.origins)), map_->watchUse();
     shrinkKernels(iteration);
     if (radii_) fitRadii(film, iteration);
     if (!source.learnsFrom(iteration)) return;
     if (radii_) weighByNeed(pass.useful, film);
     source.learn(std::move(pass.useful));
+}
+
+void CausticSide::countUse() {
+    if (std::exchange(watching_, false)) use_.count(*map_);
 }
 
 /// r^2_{i+1} = r^2_i (i + alpha) / (i + 1) [KnausZwicker2011]

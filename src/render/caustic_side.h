@@ -10,6 +10,7 @@
 #include <pellucid/transport/kernel_radius.h>
 #include <pellucid/transport/progressive_radii.h>
 
+#include "caustic_use.h"
 #include "checkpoint.h"
 #include "photon_source.h"
 #include "prepared_view.h"
@@ -39,6 +40,11 @@ public:
     /// Light paths for the iterations to come: `factor` times the mean of the first `iterations`, within the plan's bounds.
     [[nodiscard]] std::uint32_t pathsFor(double factor, std::uint32_t iterations) const noexcept;
 
+    /// After the eye pass of an iteration.
+    void countUse();
+    /// How many photons of the first iteration were used, pair by pair of lamp and caster.
+    void tellUse(std::vector<CausticLink>& links) const { use_.tell(links); }
+
     /// Of the last pass.
     [[nodiscard]] PhotonList photons() const { return map_ ? map_->photons() : PhotonList(); }
     [[nodiscard]] const StageRecord& stage() const noexcept { return stage_; }
@@ -57,6 +63,8 @@ private:
     std::unique_ptr<KernelRadii> radii_;        ///< none: one radius for all pixels
     std::unique_ptr<ProgressiveRadii> shrink_;  ///< none: all pixels alike, by radiusScale_
     std::unique_ptr<CausticMap> map_;
+    CausticUse use_;
+    bool watching_ = false;                             ///< in this iteration
     double radiusScale_ = 1.0;                          ///< squared
     std::uint64_t raysBefore_ = 0, emittedBefore_ = 0;  ///< before a break
     StageRecord stage_{"caustic photons"};

@@ -11,6 +11,7 @@
 #include <pellucid/transport/photon_trace.h>
 #include <pellucid/transport/walk.h>
 
+#include "caustic_choice.h"
 #include "photon_memory.h"
 #include "stages.h"
 #include "visible_survey.h"
@@ -108,6 +109,11 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
         return decide(plan, "caustic map", "off",
                       fmt::format("no material casts caustics: roughness above {} and no glass", s.castRoughness));
     if (seen.receivers == 0) return decide(plan, "caustic map", "off", "the camera sees no diffuse surface");
+    if (s.causticMap == "auto" && !isOn(s.chance) && !isOff(s.cache) && request.method == Method::Photon)
+        if (const auto reason = causticsLeftToEyePaths(scene)) {
+            plan.causticsToEyePaths = true;
+            return decide(plan, "caustic map", "off", *reason);
+        }
     const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
     if (useful == 0 && !isOn(s.causticMap) && request.method == Method::Photon)
         return decide(plan, "caustic map", "off",
@@ -273,7 +279,8 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
         plan.blindSpots.push_back(which +
                                   "bidirectional path tracing sees none of their caustics behind perfect mirrors or "
                                   "smooth glass (E S+ D S+ L)");
-    if ((request.method == Method::Photon || request.method == Method::Sppm) && !plan.causticMap)
+    if ((request.method == Method::Photon || request.method == Method::Sppm) && !plan.causticMap &&
+        !plan.causticsToEyePaths)
         plan.blindSpots.push_back(which + "the caustic map is off and path tracing sees none of it");
 }
 
@@ -322,10 +329,14 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     }
     const bool casts = (scene.lobeKinds() & kSpecular) != kNoLobe;
     plan.causticChains = (plan.cache || plan.otherPhotons) && casts &&
-                         (plan.causticMap ? isOn(request.settings.chance) : isOff(request.settings.causticMap));
+                         (plan.causticMap ? isOn(request.settings.chance)
+                                          : isOff(request.settings.causticMap) || plan.causticsToEyePaths);
     const bool photons = request.method != Method::Path && request.method != Method::Bdpt;
     if (photons && plan.causticLinks.empty())
         plan.causticLinks = causticLinks(scene, CasterTally(scene), seen.receivers);
+    if (photons && plan.pilotPhotons == 0 && plan.causticChains)
+        for (CausticLink& link : plan.causticLinks)
+            if (link.reason == kNoPilotPath) link.reason = "no photons: eye paths carry it, as the caustic map is off";
     planEyePaths(plan, scene, request);
     findBlindSpots(plan, scene, request);
     const Budget& b = request.budget;

@@ -60,6 +60,7 @@ void Renderer::iterate() {
     const double once = indirect_.seconds(), began = clock_.elapsed();
     makeMaps();
     tracePixels();
+    caustics_.countUse();
     secondsOfIteration_ = clock_.elapsed() - began - (indirect_.seconds() - once);
     ++iteration_;
 }
@@ -130,6 +131,7 @@ RenderRecord Renderer::record() const {
     RenderRecord r;
     r.decisions = view_.plan.decisions;
     r.causticLinks = view_.plan.causticLinks;
+    caustics_.tellUse(r.causticLinks);
     r.blindSpots = view_.plan.blindSpots;
     for (const StageRecord* s : {&view_.pilot, &indirect_.globalStage(), &indirect_.cacheStage(), &caustics_.stage(),
                                  &others_.stage(), &lights_.stage(), &eyes_.stage()})

@@ -25,7 +25,7 @@ constexpr std::size_t kMostLinks = 256, kMostLinkRows = 12;
 
 [[nodiscard]] Json linksJson(const std::vector<CausticLink>& links) {
     Json json = Json::array();
-    for (const CausticLink& l : shortened(links, kMostLinks))
+    for (const CausticLink& l : shortened(links, kMostLinks)) {
         json.push_back({{"lamp", l.lamp},
                         {"caster", l.caster},
                         {"emitted", l.emitted},
@@ -33,6 +33,8 @@ constexpr std::size_t kMostLinks = 256, kMostLinkRows = 12;
                         {"deposited", l.deposited},
                         {"useful", l.useful},
                         {"reason", l.reason}});
+        if (l.watched) json.back()["stored"] = l.stored, json.back()["used"] = l.used;
+    }
     return json;
 }
 
@@ -75,12 +77,18 @@ constexpr std::size_t kMostLinks = 256, kMostLinkRows = 12;
 
 [[nodiscard]] std::string countText(std::uint64_t count) { return count == 0 ? "-" : std::to_string(count); }
 
+/// Of the first iteration's photons.
+[[nodiscard]] std::string usedText(const CausticLink& l) {
+    return l.stored == 0 ? "-" : std::to_string(l.used) + " of " + std::to_string(l.stored);
+}
+
 /// "Why is there no caustic?"
 [[nodiscard]] std::string linksText(const std::vector<CausticLink>& links) {
-    TextTable table({"lamp", "caster", "pilot paths", "hit it", "left photons", "in view", "no caustic, because"});
+    TextTable table(
+        {"lamp", "caster", "pilot paths", "hit it", "left photons", "in view", "used", "no caustic, because"});
     for (const CausticLink& l : shortened(links, kMostLinkRows))
         table.add({printable(l.lamp), printable(l.caster), countText(l.emitted), countText(l.hit),
-                   countText(l.deposited), countText(l.useful), l.reason});
+                   countText(l.deposited), countText(l.useful), usedText(l), l.reason});
     return table.text();
 }
 

@@ -1,5 +1,7 @@
 #include <pellucid/transport/caustic_map.h>
 
+#include <atomic>
+
 #include <pellucid/math/constants.h>
 #include <pellucid/math/frame.h>
 
@@ -62,6 +64,19 @@ struct WithinRadius {
     [[nodiscard]] float worstDist() const noexcept { return radius2; }
 };
 
+/// Which photons have been summed: a flag that is only ever set, so that the order of threads does not show.
+class Marks {
+public:
+    explicit Marks(std::size_t count) : flags_(count) {}
+    void mark(std::size_t i) noexcept {
+        if (!flags_[i].load(std::memory_order_relaxed)) flags_[i].store(true, std::memory_order_relaxed);
+    }
+    [[nodiscard]] bool operator[](std::size_t i) const noexcept { return flags_[i].load(std::memory_order_relaxed); }
+
+private:
+    std::vector<std::atomic<bool>> flags_;
+};
+
 struct CountFlux : WithinRadius {
     const Photons& photons;
     glm::vec3 point, normal;
@@ -85,13 +100,14 @@ template <class Shape>
 struct KernelSum : WithinRadius {
     const Photons& photons;
     const PhotonLookup& at;
+    Marks* used;  ///< null: nobody asks
     Frame frame;  ///< for the tally
     glm::dvec3 sum{0.0};
     double inner = 0.0;  ///< luminance by the kernel of half the area
     int count = 0;
 
-    KernelSum(const Photons& list, const PhotonLookup& lookup)
-        : WithinRadius{lookup.radius * lookup.radius}, photons(list), at(lookup) {
+    KernelSum(const Photons& list, const PhotonLookup& lookup, Marks* marks)
+        : WithinRadius{lookup.radius * lookup.radius}, photons(list), at(lookup), used(marks) {
         if (at.tally != nullptr) frame = Frame(at.geometricNormal);
     }
     bool addPoint(float distance2, std::uint32_t index) noexcept {
@@ -109,6 +125,7 @@ struct KernelSum : WithinRadius {
         sum += glm::dvec3(flux * (Shape::shape(part) * through));
         if (part < 0.5F) inner += static_cast<double>(luminance(flux) * (2.0F * Shape::shape(2.0F * part) * through));
         if (at.tally != nullptr) at.tally->add(frame, offset, part, luminance(flux));
+        if (used != nullptr) used->mark(index);
         return true;
     }
 };
@@ -119,6 +136,7 @@ struct CausticMap::Impl {
     Photons photons;
     PhotonKernel kernel;
     PointTree<PointSite> tree;
+    std::unique_ptr<Marks> used;
     Impl(const PhotonList& list, PhotonKernel k, const Workers* workers)
         : photons(list), kernel(k), tree(photons.sites, workers) {}
 };
@@ -132,7 +150,7 @@ CausticMap::CausticMap(CausticMap&&) noexcept = default;
 
 template <class Shape>
 PhotonEstimate CausticMap::sum(const PhotonLookup& at) const noexcept {
-    KernelSum<Shape> result(impl_->photons, at);
+    KernelSum<Shape> result(impl_->photons, at, impl_->used.get());
     impl_->tree.search(at.point, result);
     const double perArea =
         static_cast<double>(Shape::kScale) / (kPiD * static_cast<double>(at.radius) * static_cast<double>(at.radius));
@@ -159,6 +177,15 @@ FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometr
     CountFlux result(impl_->photons, point, geometricNormal, radius * radius);
     impl_->tree.search(point, result);
     return result.sums;
+}
+
+void CausticMap::watchUse() { impl_->used = std::make_unique<Marks>(size()); }
+
+std::vector<glm::vec3> CausticMap::used() const {
+    std::vector<glm::vec3> places;
+    for (std::size_t i = 0; impl_->used && i < size(); ++i)
+        if ((*impl_->used)[i]) places.push_back(impl_->photons.sites[i].position);
+    return places;
 }
 
 PhotonKernel CausticMap::kernel() const noexcept { return impl_->kernel; }

@@ -80,6 +80,8 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
                 const bool seen = visible == nullptr || visible->seen(photon.position);
                 if (tally != nullptr && usable(photon)) fate.leavePhoton(seen);
                 if (usable(photon) && seen) {
+                    if (index < key.originsOf && tally != nullptr)
+                        out.origins.push_back(tally->originOf(photon.position, start->emission.light, fate));
                     out.photons.push_back(photon);
                     path.sink = &EnergyBalance::stored;
                     arrived += path.flux;
@@ -104,6 +106,7 @@ CausticPass traceCausticPhotons(const Scene& scene, const EmissionGuide& guide, 
     pass.emitted = key.paths;
     gather(pass.photons, chunks, &CausticPass::photons);
     gather(pass.useful, chunks, &CausticPass::useful);
+    gather(pass.origins, chunks, &CausticPass::origins);
     for (const CausticPass& c : chunks) {
         pass.rays += c.rays;
         pass.energy.add(c.energy);

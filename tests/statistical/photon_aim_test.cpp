@@ -89,5 +89,53 @@ TEST(PhotonAim, OneSunAmongAHundredLamps) {
     EXPECT_GT(shares.guided, 10.0 * shares.unguided);
 }
 
+/// A pool of two metres in a park of two hundred, under a sun of half a degree far away.
+TEST(PhotonAim, AFarSunOverAPool) {
+    const Workers workers;
+    check::SceneBuilder b;
+    b.quad({-100, 0.02, 100}, {200, 0, 0}, {0, 0, -95}, check::lambert(0.4F));
+    b.quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, check::lambert(0.7F));
+    b.surface(
+        24, 24,
+        [](double u, double v) {
+            const double x = 2.0 * u - 1.0, z = 2.0 * v - 1.0;
+            return check::SurfaceSpot{{x, 0.02 * std::sin(9.0 * x) * std::cos(7.0 * z), z},
+                                      glm::normalize(glm::dvec3(-0.18 * std::cos(9.0 * x) * std::cos(7.0 * z), 1.0,
+                                                                0.14 * std::sin(9.0 * x) * std::sin(7.0 * z)))};
+        },
+        check::glass(1.33F), true);
+    b.square({30, 60, -45}, {-30, -60, 45}, 0.35, check::lamp(2e4F));
+    b.perspective({0.0, 1.6, 1.2}, {0.0, -1.0, 0.0}, 0.9);
+    const Scene scene(b.description(), std::nullopt, SceneOptions{}, workers);
+    const UsefulShares shares = sharesOf(scene, 2'000'000, workers);
+    EXPECT_GT(shares.guided, 0.05);
+    EXPECT_GT(shares.guided, 10.0 * shares.unguided);
+}
+
+/// A closed room with one small window, a bright sky outside, a glass ball on the floor within.
+TEST(PhotonAim, AnEnvironmentThroughAWindow) {
+    const Workers workers;
+    check::SceneBuilder b;
+    const Material wall = check::lambert(0.6F);
+    b.box({-2, 0, -2}, {2, 3, 2}, wall, true);
+    // The wall x = 2 gives way to four parts around a window of half a metre.
+    Mesh& room = b.description().meshes.back();
+    std::erase_if(room.triangles, [&](const glm::uvec3& t) {
+        return room.positions[t.x].x > 1.9F && room.positions[t.y].x > 1.9F && room.positions[t.z].x > 1.9F;
+    });
+    b.quad({2, 0, 2}, {0, 0, -4}, {0, 1.5, 0}, wall);
+    b.quad({2, 2, 2}, {0, 0, -4}, {0, 1.0, 0}, wall);
+    b.quad({2, 1.5, 2}, {0, 0, -1.75}, {0, 0.5, 0}, wall);
+    b.quad({2, 1.5, -0.25}, {0, 0, -1.75}, {0, 0.5, 0}, wall);
+    b.sphere({0.5, 0.3, 0.0}, 0.2, 16, check::glass(1.5F), true);
+    b.perspective({-1.0, 1.2, 1.5}, {0.4, 0.0, 0.0}, 0.6);
+    const EnvironmentDescription sky =
+        check::environmentMap(64, 32, [](const glm::dvec3& d) { return 1.0 + std::max(0.0, d.y); });
+    const Scene scene(b.description(), sky, SceneOptions{}, workers);
+    const UsefulShares shares = sharesOf(scene, 2'000'000, workers);
+    EXPECT_GT(shares.guided, 0.02);
+    EXPECT_GT(shares.guided, 10.0 * shares.unguided);
+}
+
 }  // namespace
 }  // namespace pellucid

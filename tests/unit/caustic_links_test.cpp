@@ -60,6 +60,9 @@ TEST(CausticLinks, EachPairHasItsCountsAndItsReason) {
     const CausticLink lamp = find(plan.causticLinks, "lamp", "ball"), spot = find(plan.causticLinks, "spot", "ball");
     for (const CausticLink& l : {lamp, spot}) {
         EXPECT_GT(l.useful, 0U);
+        EXPECT_TRUE(l.watched);
+        EXPECT_GT(l.used, 0U);
+        EXPECT_GE(l.stored, l.used);
         EXPECT_GE(l.deposited, l.useful);
         EXPECT_GE(l.hit, l.deposited);
         EXPECT_GE(l.emitted, l.hit);
@@ -119,15 +122,34 @@ TEST(CausticLinks, CountsAreThoseOfThePassAtAnyNumberOfThreads) {
     EXPECT_EQ(deposited, pass.useful.size());
 }
 
+/// A narrow look at the floor beside the ball: most photons are kept, being near, and few lie within a kernel.
+TEST(CausticLinks, UsedAreThoseThatKernelsSummedAtAnyNumberOfThreads) {
+    const Workers one(1), three(3);
+    const Scene scene(twoBalls(), std::nullopt, {}, one);
+    RenderRequest request = small();
+    request.settings.causticRadius = 0.4;
+    const RenderRecord narrow = planOnly(scene, request, one), same = planOnly(scene, request, three);
+    request.settings.causticRadius = 12.0;
+    const RenderRecord wide = planOnly(scene, request, one);
+    const CausticLink n = find(narrow.causticLinks, "lamp", "ball"), s = find(same.causticLinks, "lamp", "ball"),
+                      w = find(wide.causticLinks, "lamp", "ball");
+    EXPECT_EQ(n.stored, s.stored);
+    EXPECT_EQ(n.used, s.used);
+    EXPECT_LT(n.used, w.used);
+    EXPECT_GT(static_cast<double>(w.used), 0.9 * static_cast<double>(w.stored));
+    EXPECT_EQ(find(narrow.causticLinks, "wrong way", "ball").stored, 0U);
+}
+
 TEST(CausticLinks, TextAndJsonSumTheRest) {
     RenderRecord record;
     for (std::uint64_t i = 0; i < 300; ++i)
-        record.causticLinks.push_back({"lamp " + std::to_string(i), "ball", 10, 3, 2, 1, ""});
+        record.causticLinks.push_back({"lamp " + std::to_string(i), "ball", i, 0, 10, 3, 2, 1, true, 7, 5, ""});
     const RecordContext context;
     const auto json = nlohmann::json::parse(planJson(record, context)).at("caustics");
     EXPECT_EQ(json.size(), 256U);
     EXPECT_EQ(json.back().at("lamp"), "45 more pairs");
     EXPECT_EQ(json.back().at("hit"), 45 * 3);
+    EXPECT_EQ(json.back().at("used"), 45 * 5);
     const std::string text = planText(record, context);
     EXPECT_NE(text.find("289 more pairs"), std::string::npos);
     EXPECT_EQ(text.find("lamp 11 "), std::string::npos);

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include <pellucid/render/render.h>
 #include <pellucid/transport/caster_tally.h>
 
 namespace pellucid {
+
+/// The reason where nothing is known.
+inline constexpr std::string_view kNoPilotPath = "no pilot path began at this lamp";
 
 /// One row a pair, those that matter most first: useful photons, then hits, then the power of the lamp. `receivers`: pixels
 /// whose path finds a diffuse surface.

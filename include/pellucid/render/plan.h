@@ -49,6 +49,7 @@ struct Plan {
     /// From generation to generation.
     bool growPhotons = true, growRays = true;
     float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
+    bool causticsToEyePaths = false;  ///< where they see more than photons would: then there is no caustic map
     bool causticChains = false;    ///< beside the cache eye paths follow S chains to the lamps, alone or with a share
     bool bidirectional = false;    ///< eye paths meet light paths
     float texelWidth = 0.0F;       ///< of the texel irradiance, scene units; 0: off

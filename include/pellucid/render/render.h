@@ -74,14 +74,19 @@ struct NonFinite {
     std::uint32_t sample = 0;
 };
 
-/// What the pilot's photon paths of one lamp did at one caster (names of lights and materials).
+/// What the pilot's photon paths of one lamp did at one caster (names of lights and materials), and what became of the photons
+/// of a render's first iteration.
 struct CausticLink {
     std::string lamp, caster;
-    std::uint64_t emitted = 0;    ///< by the lamp, towards anything
-    std::uint64_t hit = 0;        ///< met the caster
-    std::uint64_t deposited = 0;  ///< and left a caustic photon on a diffuse surface
-    std::uint64_t useful = 0;     ///< and did so where the camera looks
-    std::string reason;           ///< why there is no caustic; empty where there is one
+    std::size_t lampIndex = 0, casterIndex = 0;  ///< in the scene's CasterTally
+    std::uint64_t emitted = 0;                   ///< by the lamp, towards anything
+    std::uint64_t hit = 0;                       ///< met the caster
+    std::uint64_t deposited = 0;                 ///< and left a caustic photon on a diffuse surface
+    std::uint64_t useful = 0;                    ///< and did so where the camera looks
+    bool watched = false;                        ///< the first iteration was looked at
+    std::uint64_t stored = 0;                    ///< photons of its first 262,144 paths that the caustic map keeps
+    std::uint64_t used = 0;                      ///< of them, those that the kernel of a pixel has summed
+    std::string reason;                          ///< why there is no caustic; empty where there is one
 };
 
 /// How caustics seen in mirrors and through glass were made for a reference.

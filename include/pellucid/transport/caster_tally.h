@@ -38,6 +38,13 @@ struct TalliedCaster {
     float roughness = 0.0F;
 };
 
+/// Where a stored photon came from.
+struct PhotonOrigin {
+    glm::vec3 position{0.0F};   ///< where it lies, scene units
+    std::uint32_t lamp = 0;     ///< of CasterTally::lamps()
+    std::uint64_t casters = 0;  ///< that its path met, a bit each
+};
+
 class CasterTally {
 public:
     explicit CasterTally(const Scene& scene);
@@ -51,6 +58,10 @@ public:
         }
     };
     void meet(Path& path, std::uint32_t material) const noexcept { path.met |= bits_[material]; }
+    [[nodiscard]] PhotonOrigin originOf(const glm::vec3& position, std::uint32_t light,
+                                        const Path& path) const noexcept {
+        return {position, lampOf_[light], path.met};
+    }
     /// At its end. `vertices`: how many surfaces it met.
     void add(std::uint32_t light, const Path& path, int vertices, bool escaped) noexcept;
 

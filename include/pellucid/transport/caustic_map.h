@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include <pellucid/base/parallel.h>
 #include <pellucid/surface/bsdf.h>
@@ -68,6 +69,11 @@ public:
 
     [[nodiscard]] PhotonKernel kernel() const noexcept;
     [[nodiscard]] std::size_t size() const noexcept;
+
+    /// From here on remembers which photons some estimate has summed. Not while another thread looks up.
+    void watchUse();
+    /// Their places, in the map's order: the same at any number of threads.
+    [[nodiscard]] std::vector<glm::vec3> used() const;
     /// As the map keeps them: 20 bytes each.
     [[nodiscard]] PhotonList photons() const;
 

@@ -18,13 +18,15 @@ namespace pellucid {
 
 struct PhotonPassKey {
     std::uint64_t seed = 0;
-    std::uint64_t pass = 0;   ///< a different one for each pass of a render
-    std::uint32_t paths = 0;  ///< emitted in this pass
+    std::uint64_t pass = 0;       ///< a different one for each pass of a render
+    std::uint32_t paths = 0;      ///< emitted in this pass
+    std::uint32_t originsOf = 0;  ///< so many of them tell where their photons came from; wants a tally
 };
 
 struct CausticPass {
     PhotonList photons;  ///< L S+ D
     std::vector<UsefulEmission> useful;
+    std::vector<PhotonOrigin> origins;  ///< of the photons of the first paths, where that is asked for
     std::uint64_t rays = 0, emitted = 0;
     EnergyBalance energy;  ///< of the pass, scene units
 };
