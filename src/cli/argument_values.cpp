@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kLargestSide = 65536;
 /// emission, direct, caustic and indirect are in every EXR and may be named all the same.
-constexpr std::array<std::string_view, 20> kLayers{
-    "all",     "none",          "emission",        "direct",     "caustic",      "indirect",     "classes",
-    "albedo",  "normal",        "depth",           "variance",   "records",      "radius",       "photons",
-    "samples", "record_radius", "record_gradient", "record_age", "record_reuse", "record_reason"};
+constexpr std::array<std::string_view, 21> kLayers{
+    "all",     "none",    "emission",      "direct",          "caustic",    "indirect",     "classes",
+    "albedo",  "normal",  "depth",         "variance",        "records",    "radius",       "photons",
+    "density", "samples", "record_radius", "record_gradient", "record_age", "record_reuse", "record_reason"};
 constexpr std::size_t kAlwaysThere = 6;  // of them name no extra layer, "all" apart
 
 [[nodiscard]] std::vector<std::string> split(std::string_view text, char separator) {

@@ -23,11 +23,12 @@ std::unique_ptr<Scene> loadScene(const SceneArguments& arguments, bool requireLi
     if (!arguments.environment.empty()) environment = loadEnvironment(arguments.environment);
     SceneOptions options;
     options.lobeRules.castRoughness = static_cast<float>(arguments.settings.castRoughness);
+    options.lobeRules.glassCastRoughness = static_cast<float>(arguments.settings.glassCastRoughness);
     options.requireLight = requireLight;
     auto scene = std::make_unique<Scene>(std::move(description), std::move(environment), options, workers, log);
     if (!arguments.tunedFor.empty() && arguments.tunedFor != scene->hash())
         logTo(log, LogLevel::Warning,
-              arguments.config + " was tuned for another scene, environment or surface.cast_roughness (hash " +
+              arguments.config + " was tuned for another scene, environment or roughness that casts (hash " +
                   arguments.tunedFor + ", here " + scene->hash() +
                   "): what it says of error and time need not hold here");
     return scene;

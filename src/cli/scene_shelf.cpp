@@ -8,7 +8,8 @@
 namespace pellucid {
 
 LoadedScene SceneShelf::scene(const Settings& settings) {
-    auto found = shelf_.find(settings.castRoughness);
+    const std::pair key{settings.castRoughness, settings.glassCastRoughness};
+    auto found = shelf_.find(key);
     if (found == shelf_.end()) {
         SceneArguments arguments = arguments_;
         arguments.settings = settings;
@@ -16,7 +17,7 @@ LoadedScene SceneShelf::scene(const Settings& settings) {
         // The file's warnings are the same each time: they are told once.
         auto loaded = loadScene(arguments, true, workers_, shelf_.empty() ? log_ : LogSink{});
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        found = shelf_.emplace(settings.castRoughness, Entry{std::move(loaded), seconds}).first;
+        found = shelf_.emplace(key, Entry{std::move(loaded), seconds}).first;
     }
     return {*found->second.scene, found->second.seconds};
 }

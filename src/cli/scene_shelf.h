@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <utility>
 
 #include <pellucid/base/log.h>
 #include <pellucid/base/parallel.h>
@@ -29,7 +30,7 @@ private:
     const SceneArguments& arguments_;
     const Workers& workers_;
     const LogSink& log_;
-    std::map<double, Entry> shelf_;  ///< by surface.cast_roughness
+    std::map<std::pair<double, double>, Entry> shelf_;  ///< by surface.cast_roughness and surface.glass_cast_roughness
 };
 
 }  // namespace pellucid

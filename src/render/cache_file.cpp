@@ -43,7 +43,7 @@ static_assert(std::is_trivially_copyable_v<IrradianceRecord> &&
             std::find_if(there.parts.begin(), there.parts.end(), [&](const auto& part) { return part.first == name; });
         if (other != there.parts.end() && other->second == value) continue;
         if (!text.empty()) text += ", ";
-        if (name == "scene") return "scene, environment or surface.cast_roughness";
+        if (name == "scene") return "scene, environment or roughness that casts";
         text += name + "=" + (other == there.parts.end() ? "?" : other->second) + " there, " + value + " here";
     }
     if (text.empty() && here.parts.size() != there.parts.size()) text = "settings that this version does not know";

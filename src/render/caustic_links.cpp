@@ -28,9 +28,7 @@ public:
         const CasterFate f = tally_.fate(lamp, caster);
         const std::uint64_t emitted = tally_.emitted(lamp);
         if (f.useful > 0) return "";
-        if (!c.smooth)
-            return fmt::format("too rough to cast: {:.3g} is above surface.cast_roughness {:.3g}; path traced",
-                               c.roughness, scene_.surfaces().rules().castRoughness);
+        if (!c.smooth) return tooRough(c);
         if (receivers_ == 0) return "no receiver: the camera sees no diffuse surface";
         if (f.hit == 0 && behind(tally_.lamps()[lamp], caster)) return "behind the lamp: it shines the other way";
         if (f.hit == 0 && outsideCone(tally_.lamps()[lamp], caster)) return "outside of the spot's cone";
@@ -48,6 +46,14 @@ public:
     }
 
 private:
+    [[nodiscard]] std::string tooRough(const TalliedCaster& c) const {
+        const LobeRules& rules = scene_.surfaces().rules();
+        const Material& m = scene_.description().materials[c.materials.front()];
+        const bool body = m.transmission > 0.0F && m.thickness > 0.0F;
+        return fmt::format("too rough to cast: {:.3g} is above surface.{}cast_roughness {:.3g}; path traced",
+                           c.roughness, body ? "glass_" : "", body ? rules.glassCastRoughness : rules.castRoughness);
+    }
+
     [[nodiscard]] const Bounds& boundsOf(std::size_t caster) {
         const auto [known, fresh] = bounds_.try_emplace(caster);
         if (!fresh) return known->second;

@@ -1,6 +1,7 @@
 // The film as an image: the mean of each pixel, by layer.
 #include <algorithm>
 
+#include <pellucid/math/constants.h>
 #include <pellucid/render/film.h>
 
 namespace pellucid {
@@ -13,12 +14,18 @@ constexpr const char* kLayerNames[kPathClasses] = {"emission", "direct", "causti
     return std::any_of(layers.begin(), layers.end(), [name](const std::string& l) { return l == name || l == "all"; });
 }
 
+/// Of the photons of an iteration, by the square of the unit of `radius`: what was met over the mean kernel's disc.
+[[nodiscard]] float photonDensity(float photons, float radius) noexcept {
+    return radius > 0.0F ? photons * kInvPi / (radius * radius) : 0.0F;
+}
+
 }  // namespace
 
 const std::vector<std::string>& auxiliaryLayers() noexcept {
-    static const std::vector<std::string> names{
-        "albedo",  "normal",  "depth",         "variance",        "radius",     "photons",      "records",
-        "samples", "classes", "record_radius", "record_gradient", "record_age", "record_reuse", "record_reason"};
+    static const std::vector<std::string> names{"albedo",     "normal",       "depth",         "variance",
+                                                "radius",     "photons",      "density",       "records",
+                                                "samples",    "classes",      "record_radius", "record_gradient",
+                                                "record_age", "record_reuse", "record_reason"};
     return names;
 }
 
@@ -48,13 +55,15 @@ Image Film::image(const std::vector<std::string>& layers) const {
     for (const char* l : kLayerNames) addRgb(l);
     const bool albedo = wants(layers, "albedo"), normal = wants(layers, "normal"), depth = wants(layers, "depth"),
                withVariance = wants(layers, "variance"), radius = wants(layers, "radius"),
-               photons = wants(layers, "photons"), samples = wants(layers, "samples");
+               photons = wants(layers, "photons"), density = wants(layers, "density"),
+               samples = wants(layers, "samples");
     if (albedo) addRgb("albedo");
     if (normal) names.insert(names.end(), {"normal.X", "normal.Y", "normal.Z"});
     if (depth) names.emplace_back("depth.Z");
     if (withVariance) names.emplace_back("variance.Y");
     if (radius) names.emplace_back("radius.Y");
     if (photons) names.emplace_back("photons.Y");
+    if (density) names.emplace_back("density.Y");
     if (samples) names.emplace_back("samples.Y");
     const auto strings = litStrings();
     for (const auto& [slot, name] : strings) addRgb(name);
@@ -76,6 +85,7 @@ Image Film::image(const std::vector<std::string>& layers) const {
         if (withVariance) image.at(i, channel++) = static_cast<float>(variance(p));
         if (radius) image.at(i, channel++) = p.radius / n;
         if (photons) image.at(i, channel++) = p.photons / n;
+        if (density) image.at(i, channel++) = photonDensity(p.photons / n, p.radius / n);
         if (samples) image.at(i, channel++) = static_cast<float>(p.taken);
         for (const auto& [slot, name] : strings)
             for (std::size_t c = 0; c < 3; ++c) image.at(i, channel++) = static_cast<float>(stringMean(slot, i, c));

@@ -58,6 +58,7 @@ namespace {
     std::uint64_t key = 0;
     for (const char ch : contents) key = hashCombine(key, static_cast<unsigned char>(ch));
     key = hashCombine(key, std::bit_cast<std::uint32_t>(rules.castRoughness));
+    key = hashCombine(key, std::bit_cast<std::uint32_t>(rules.glassCastRoughness));
     std::array<char, 17> text{};
     std::to_chars(text.data(), text.data() + 16, key, 16);
     return text.data();

@@ -47,8 +47,17 @@ float alphaOf(float roughness, const LobeRules& rules) noexcept {
     return alpha < std::max(rules.deltaAlpha, kLeastAlpha) ? 0.0F : alpha;
 }
 
+LobeKinds facetKind(float roughness, float threshold, const LobeRules& rules) noexcept {
+    return roughness <= threshold || alphaOf(roughness, rules) == 0.0F ? kSpecular : kGlossy;
+}
+
 LobeKinds facetKind(float roughness, const LobeRules& rules) noexcept {
-    return roughness <= rules.castRoughness || alphaOf(roughness, rules) == 0.0F ? kSpecular : kGlossy;
+    return facetKind(roughness, rules.castRoughness, rules);
+}
+
+/// What transmits: a body, or a thin pane, behind which next-event estimation finds lamps as it does before metal.
+LobeKinds transmittingKind(const Material& m, float roughness, const LobeRules& rules) noexcept {
+    return facetKind(roughness, isVolume(m) ? rules.glassCastRoughness : rules.castRoughness, rules);
 }
 
 /// True when the facets of a body with this ior turn light so little that it goes on as through a smooth face.
@@ -148,7 +157,7 @@ Lobe dielectric(const Material& m, const Resolved& r, float weight, bool backSid
     const bool smooth = alpha == 0.0F || turnsLittle(m, alpha);
     DielectricLobe lobe{r.baseColor, m.ior, smooth ? 0.0F : alpha, r.specular, !isVolume(m)};
     if (isVolume(m) && backSide && m.ior > 0.0F) lobe.eta = 1.0F / m.ior;
-    return {lobe, weight, 0.0F, smooth ? kSpecular : facetKind(r.roughness, rules), smooth};
+    return {lobe, weight, 0.0F, smooth ? kSpecular : transmittingKind(m, r.roughness, rules), smooth};
 }
 
 /// Every kind of facet lobe that the material's roughness can take.
@@ -161,7 +170,11 @@ LobeKinds kindsOf(const Material& m, const LobeRules& rules) noexcept {
     const LobeKinds facets = facetKinds(m, rules);
     LobeKinds kinds = m.metallic > 0.0F ? facets : kNoLobe;
     if (m.metallic >= 1.0F && !m.metallicRoughnessTexture) return kinds;
-    if (m.transmission > 0.0F) kinds = kinds | (turnsLittle(m, m.roughness * m.roughness) ? kSpecular : facets);
+    if (m.transmission > 0.0F) {
+        const bool smooth = turnsLittle(m, m.roughness * m.roughness);
+        kinds = kinds | (smooth ? kSpecular : transmittingKind(m, m.roughness, rules));
+        if (m.metallicRoughnessTexture) kinds = kinds | kSpecular;
+    }
     if (m.transmission >= 1.0F && !m.transmissionTexture) return kinds;
     if (coats(m)) kinds = kinds | facets;
     return isBlack(Rgb{m.baseColor}) ? kinds : kinds | kDiffuse;

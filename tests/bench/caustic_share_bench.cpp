@@ -136,7 +136,7 @@ void keep(const std::vector<Rgb>& values, const std::string& file) {
 void measure(std::string_view caster, double size, float roughness, const Arguments& arguments) {
     const Workers workers(1);
     SceneOptions options;
-    options.lobeRules.castRoughness = static_cast<float>(arguments.cast);
+    options.lobeRules.castRoughness = options.lobeRules.glassCastRoughness = static_cast<float>(arguments.cast);
     const Scene scene(sceneOf(caster, size, roughness), std::nullopt, options, workers);
     Reference reference;
     for (std::uint64_t i = 0; i < 2; ++i) {

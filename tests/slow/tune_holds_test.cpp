@@ -58,6 +58,7 @@ public:
     Shelf(std::string name, bool moved, const Workers& workers)
         : name_(std::move(name)), moved_(moved), workers_(workers) {}
     [[nodiscard]] LoadedScene scene(const Settings& settings) {
+        // The tuner leaves surface.glass_cast_roughness as it is.
         std::unique_ptr<Scene>& scene = scenes_[settings.castRoughness];
         SceneOptions options;
         options.lobeRules.castRoughness = static_cast<float>(settings.castRoughness);

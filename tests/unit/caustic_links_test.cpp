@@ -159,15 +159,16 @@ TEST(PhotonLayers, PhotonsStandWhereKernelsMeetThem) {
     const Workers workers(2);
     const Scene scene(twoBalls(), std::nullopt, {}, workers);
     RenderRequest request = small();
-    request.layers = {"photons", "radius"};
+    request.layers = {"photons", "radius", "density"};
     const Image image = render(scene, request, workers).image;
     const int photons = image.channel("photons.Y"), radius = image.channel("radius.Y"),
-              caustic = image.channel("caustic.G");
+              density = image.channel("density.Y"), caustic = image.channel("caustic.G");
     double most = 0.0;
     for (std::size_t i = 0; i < image.pixels(); ++i) {
         most = std::max(most, static_cast<double>(image.at(i, photons)));
         if (image.at(i, radius) == 0.0F) {
             EXPECT_EQ(image.at(i, photons), 0.0F) << i;
+            EXPECT_EQ(image.at(i, density), 0.0F) << i;
             continue;
         }
         EXPECT_EQ(image.at(i, photons) > 0.0F, image.at(i, caustic) > 0.0F) << i;
@@ -199,6 +200,69 @@ TEST(PhotonMemory, SizesThePassesAndSaysSo) {
     request.settings.photonMemory = -1.0;
     request.settings.causticPhotons = request.settings.globalPhotons = 3000;
     for (const Decision& d : planOnly(scene, request, workers).decisions) EXPECT_NE(d.choice, "fewer");
+}
+
+/// What holds nothing to do ends, and says why: a lamp that hits nothing, a scene without receivers, one photon.
+TEST(PhotonExtremes, EndWithAWord) {
+    const Workers workers(2);
+    const auto reasonOf = [](const RenderRecord& record, const std::string& decision) {
+        const auto d = std::ranges::find(record.decisions, decision, &Decision::name);
+        return d == record.decisions.end() ? std::string() : d->choice + ": " + d->reason;
+    };
+    for (const Method method : {Method::Photon, Method::Sppm}) {
+        RenderRequest request = small();
+        request.method = method;
+        check::SceneBuilder away;  // its lamp shines into the void
+        away.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, named(check::lambert(0.7F), "floor"));
+        away.sphere({0, 0.4, 0}, 0.25, 8, named(check::glass(1.5F), "ball"), true);
+        away.square({0.0, 1.9, 0.0}, {0, 1, 0}, 0.2, named(check::lamp(9.0F), "lamp"));
+        away.perspective({0.0, 1.2, 3.0}, {0, 0.3, 0}, 0.8);
+        const Scene dark(away.description(), std::nullopt, {}, workers);
+        const RenderRecord nothing = render(dark, request, workers).record;
+        EXPECT_EQ(find(nothing.causticLinks, "lamp", "ball").reason, "behind the lamp: it shines the other way");
+        if (method == Method::Photon) {
+            EXPECT_NE(reasonOf(nothing, "caustic map").find("off: 0 of "), std::string::npos)
+                << reasonOf(nothing, "caustic map");
+        }
+        const Scene bare(twoBalls(false), std::nullopt, {}, workers);
+        const RenderRecord blind = render(bare, request, workers).record;
+        EXPECT_EQ(reasonOf(blind, "caustic map"), "off: the camera sees no diffuse surface");
+        const Scene balls(twoBalls(), std::nullopt, {}, workers);
+        request.settings.causticPhotons = request.settings.globalPhotons = 1;
+        const RenderRecord one = render(balls, request, workers).record;
+        EXPECT_TRUE(reasonOf(one, "caustic photons").starts_with("1 paths an iteration"));
+        EXPECT_EQ(one.nonfinite.count, 0U);
+    }
+}
+
+/// Rough metal under a small lamp is what next-event estimation shows best; behind glass, under a large lamp, or when it is asked
+/// for, photons are. The choice changes who carries the light, not how much there is.
+TEST(CausticChoice, RoughMetalUnderASmallLampIsLeftToEyePaths) {
+    const Workers workers(2);
+    const auto choiceOf = [&](const Material& caster, double lamp, const std::string& asked) {
+        check::SceneBuilder b;
+        b.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, check::lambert(0.7F));
+        b.quad({0.7, 0, 0.8}, {0, 0, -1.6}, {0, 1.0, 0}, named(caster, "caster"));
+        b.square({0.0, 1.5, 0.0}, {0.3, -1, 0}, lamp, named(check::lamp(9.0F), "lamp"));
+        b.perspective({0.0, 1.2, 3.0}, {0, 0.3, 0}, 0.8);
+        const Scene scene(b.description(), std::nullopt, {}, workers);
+        RenderRequest request = small();
+        setParameter(request.settings, "photon.caustic_map", asked);
+        const RenderRecord plan = planOnly(scene, request, workers);
+        const auto d = std::ranges::find(plan.decisions, "caustic map", &Decision::name);
+        if (d == plan.decisions.end()) return std::string();
+        if (d->choice == "off") {
+            EXPECT_EQ(find(plan.causticLinks, "lamp", "caster").reason,
+                      "no photons: eye paths carry it, as the caustic map is off");
+            EXPECT_TRUE(plan.blindSpots.empty());
+        }
+        return d->choice;
+    };
+    EXPECT_EQ(choiceOf(check::mirror(0.9F, 0.28F), 0.1, "auto"), "off");
+    EXPECT_EQ(choiceOf(check::mirror(0.9F, 0.28F), 0.1, "on"), "on");
+    EXPECT_EQ(choiceOf(check::mirror(0.9F, 0.28F), 0.7, "auto"), "on");
+    EXPECT_EQ(choiceOf(check::mirror(0.9F, 0.1F), 0.1, "auto"), "on");
+    EXPECT_EQ(choiceOf(check::glass(1.5F, 0.0F, 0.28F), 0.1, "auto"), "on");
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ struct Settings {
     std::string split = "auto";     ///< path.split: auto | on | off
     std::string adaptive = "auto";  ///< path.adaptive: auto | on | off
     // surfaces
-    double castRoughness = 0.3;  ///< surface.cast_roughness
+    double castRoughness = 0.3;       ///< surface.cast_roughness
+    double glassCastRoughness = 1.0;  ///< surface.glass_cast_roughness
     // photons
     int causticPhotons = -1;              ///< photon.caustic: photon paths an iteration; -1: the plan sizes it
     int globalPhotons = -1;               ///< photon.global

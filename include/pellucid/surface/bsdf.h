@@ -30,6 +30,10 @@ enum class TransportMode { Radiance, Flux };
 struct LobeRules {
     float castRoughness = 0.3F;  ///< a microfacet lobe up to this roughness is Specular, above it Glossy
     float deltaAlpha = 1e-3F;    ///< below this GGX alpha a lobe is an exact delta lobe
+    /// The same for bodies of glass: no lamp is found through them but by chance, however rough they are, and records of the
+    /// cache that had the luck are outvoted by those that had not.
+    float glassCastRoughness = 1.0F;
+    bool operator==(const LobeRules&) const = default;
 };
 
 /// How directions are drawn: in proportion to the lobes, or blind to them by the cosine or uniformly (over both sides where
