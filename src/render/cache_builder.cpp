@@ -94,11 +94,11 @@ private:
     std::vector<std::uint32_t> kept;
     for (const std::uint32_t pixel : misses) {
         const GatherPoint& p = seen.points[pixel];
-        if (sure.covers(p.position, p.normal, error * kNearInBatch)) continue;
+        if (sure.covers(p.position, p.unmappedNormal, error * kNearInBatch)) continue;
         kept.push_back(pixel);
         IrradianceRecord record;
         record.position = p.position;
-        record.normal = p.normal;
+        record.normal = p.unmappedNormal;
         record.radius = plan.minSpacing * p.footprint / error;
         if (record.radius > 0.0F) sure.adopt(record, record.radius * error);
     }
@@ -117,6 +117,7 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
               : std::make_unique<IrradianceCache>(context.scene.bounds(), read, plan.cacheMetric, &context.scene);
     IrradianceCache& cache = *build.cache;
     const std::size_t old = cache.records().size();
+    const bool mapped = context.scene.surfaces().mapsDiffuseNormals();
     BlockChoice choice(seen, width, plan);
     for (int stride = kCoarsestStride; stride >= 1; stride /= 2) {
         const std::vector<std::uint32_t> round = candidates(seen, width, stride, seed);
@@ -129,7 +130,7 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
                 const GatherPoint& p = seen.points[round[done + i]];
                 if (choice.isClosed(round[done + i])) return;
                 const float largest = kCoarser * plan.maxSpacing * p.footprint / error;
-                missed[i] = cache.covers(p.position, p.normal, error, old, largest) ? 0 : 1;
+                missed[i] = cache.covers(p.position, p.unmappedNormal, error, old, largest) ? 0 : 1;
             });
             std::vector<std::uint32_t> misses;
             for (std::size_t i = 0; i < missed.size(); ++i)
@@ -137,6 +138,7 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
             const std::size_t missing = misses.size();
             misses = thinned(misses, seen, context.scene.bounds(), plan, error);
             std::vector<IrradianceRecord> records(misses.size());
+            std::vector<LightByDirection> lights(mapped ? misses.size() : 0);
             std::vector<std::uint64_t> rays(misses.size(), 0);
             workers.forEach(misses.size(), 1, [&](std::size_t i) {
                 const GatherPoint& p = seen.points[misses[i]];
@@ -148,14 +150,15 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
                                             plan.cacheMetric,
                                             context.scene.radius(),
                                             read};
-                records[i] = gatherRecord(walk, p, options, misses[i]);
+                records[i] = gatherRecord(walk, p, options, misses[i], mapped ? &lights[i] : nullptr);
                 rays[i] = walk.rays();
             });
             for (std::size_t i = 0; i < records.size(); ++i) {
                 IrradianceRecord& r = records[i];
                 r.born = views;
                 const float largest = kCoarser * plan.maxSpacing * seen.points[misses[i]].footprint / error;
-                if (!cache.covers(r.position, r.normal, error * kNearInBatch, old, largest)) cache.insert(r);
+                if (!cache.covers(r.position, r.normal, error * kNearInBatch, old, largest))
+                    cache.insert(r, mapped ? &lights[i] : nullptr);
             }
             build.gathered += records.size();
             choice.learn(round, done, end, misses, stride);

@@ -12,7 +12,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCacheFile{"pellucid cache 2\n", "the cache file", "delete it, or name another: it is made anew"};
+constexpr SealedKind kCacheFile{"pellucid cache 3\n", "the cache file", "delete it, or name another: it is made anew"};
 
 /// What a view may have for itself.
 constexpr std::array<std::string_view, 12> kOfTheView{
@@ -43,7 +43,7 @@ static_assert(std::is_trivially_copyable_v<IrradianceRecord> &&
             std::find_if(there.parts.begin(), there.parts.end(), [&](const auto& part) { return part.first == name; });
         if (other != there.parts.end() && other->second == value) continue;
         if (!text.empty()) text += ", ";
-        if (name == "scene") return "scene, environment or roughness that casts";
+        if (name == "scene") return "geometry, materials, lights or environment";
         text += name + "=" + (other == there.parts.end() ? "?" : other->second) + " there, " + value + " here";
     }
     if (text.empty() && here.parts.size() != there.parts.size()) text = "settings that this version does not know";
@@ -65,7 +65,7 @@ static_assert(std::is_trivially_copyable_v<IrradianceRecord> &&
 CacheKey cacheKey(const Scene& scene, const Settings& resolved, bool causticsApart) {
     CacheKey key;
     key.parts.emplace_back("version", PELLUCID_VERSION);
-    key.parts.emplace_back("scene", scene.hash());
+    key.parts.emplace_back("scene", scene.lightHash());
     key.parts.emplace_back("caustics", causticsApart ? "apart from the records" : "in the records");
     for (const auto& [name, value] : settingsAsText(resolved))
         if (std::find(kOfTheView.begin(), kOfTheView.end(), name) == kOfTheView.end())
@@ -92,6 +92,7 @@ std::string cacheBody(const CacheKey& key, const LearntLight& light) {
     body.put(static_cast<std::uint32_t>(light.cache->metric()));
     body.putBlock(light.cache->records());
     body.putBlock(light.cache->reaches());
+    body.putBlock(light.cache->lights());
     body.putBlock(light.map ? light.map->save() : std::vector<char>());
     return body.bytes();
 }
@@ -117,16 +118,20 @@ LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& f
     const auto metric = reader.get<std::uint32_t>();
     const auto records = reader.getBlock<std::vector<IrradianceRecord>>();
     const auto reaches = reader.getBlock<std::vector<float>>();
+    const auto lights = reader.getBlock<std::vector<LightByDirection>>();
     const auto map = reader.getBlock<std::vector<char>>();
     const bool sizes = light.size.gatherRays > 0 && light.size.cacheError > 0.0F && error >= light.size.cacheError &&
                        error < 100.0F && metric <= static_cast<std::uint32_t>(CacheMetric::Hessian) &&
                        light.rays >= 0.0;
-    if (!reader.good() || reader.left() > 0 || !sizes || records.size() != reaches.size())
+    const bool mapped = scene != nullptr ? scene->surfaces().mapsDiffuseNormals() : !lights.empty();
+    if (!reader.good() || reader.left() > 0 || !sizes || records.size() != reaches.size() ||
+        lights.size() != (mapped ? records.size() : 0))
         refuseDamaged(file, kCacheFile);
     auto cache = std::make_shared<IrradianceCache>(bounds, error, static_cast<CacheMetric>(metric), scene);
     for (std::size_t i = 0; i < records.size(); ++i) {
-        if (!isSound(records[i], reaches[i], bounds)) refuseDamaged(file, kCacheFile);
-        cache->adopt(records[i], reaches[i]);
+        if (!isSound(records[i], reaches[i], bounds) || (mapped && !isSound(lights[i])))
+            refuseDamaged(file, kCacheFile);
+        cache->adopt(records[i], reaches[i], mapped ? &lights[i] : nullptr);
     }
     light.cache = std::move(cache);
     if (!map.empty()) {

@@ -53,7 +53,7 @@ void describeSpeakers(Planes& planes, const CacheView& view, const Workers& work
             return;
         }
         Silence objection = Silence::Nobody;
-        speakers[i] = view.cache.speakers(points[i].position, points[i].normal, objection);
+        speakers[i] = view.cache.speakers(points[i].position, points[i].unmappedNormal, objection);
         planes[kReason][i] = reasonOf(!speakers[i].empty(), objection, !view.plain.empty() && view.plain[i] != 0);
     });
     std::vector<std::uint32_t> uses(records.size(), 0);

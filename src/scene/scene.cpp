@@ -76,7 +76,7 @@ Scene::Scene(SceneDescription description, std::optional<EnvironmentDescription>
     s.scaleMaterials();
     s.placeGeometry();
     s.buildSurfaces(options.lobeRules);
-    if (environment) s.buildEnvironment(*environment, log);
+    if (environment) s.buildEnvironment(*environment, log), s.environmentHash = environment->contentHash;
     s.mergeCoincidentGlass();
     s.buildLights();
     if (options.requireLight && (s.lights->count() == 0 || !(s.lights->totalPower() > 0.0)))

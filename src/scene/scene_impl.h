@@ -28,7 +28,7 @@ struct Scene::Impl {
     bool anyMerged = false;
     std::uint64_t triangleCount = 0;
     LobeKinds kinds = kNoLobe;
-    std::string hash;
+    std::string hash, environmentHash;
 
     [[nodiscard]] SurfacePoint surfacePoint(const RawHit& hit) const noexcept;
     [[nodiscard]] std::array<glm::vec3, 3> corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept;

@@ -88,7 +88,7 @@ std::vector<Finding> gradients(const CheckContext& context) {
         GatherPoint point;
         point.valid = true;
         point.position = glm::vec3((glm::dvec3(x, 0, 0) - scene.normalisation().centre) * scale);
-        point.normal = point.geometricNormal = {0, 0, 1};
+        point.normal = point.geometricNormal = point.unmappedNormal = {0, 0, 1};
         return gatherRecord(walk, point, {rays, 0.0F, 1e6F, seed}, 0);
     };
     const glm::dvec3 up(0, 0, 1);

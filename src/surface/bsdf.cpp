@@ -22,7 +22,11 @@ inline void visitModel(const Lobe& lobe, const Function& function) noexcept {
 }  // namespace
 
 Bsdf::Bsdf(const Frame& frame, const glm::vec3& geometricNormal, bool backSide, bool bordersVolume) noexcept
-    : frame_(frame), geometricNormal_(geometricNormal), backSide_(backSide), bordersVolume_(bordersVolume) {}
+    : frame_(frame),
+      geometricNormal_(geometricNormal),
+      unmappedNormal_(frame.normal),
+      backSide_(backSide),
+      bordersVolume_(bordersVolume) {}
 
 void Bsdf::add(const Lobe& lobe, const glm::vec3& wo) noexcept {
     assert(count_ < kMaxLobes);

@@ -112,15 +112,20 @@ glm::vec3 mappedNormal(const Material& m, const SurfacePoint& point) noexcept {
     return mapped2 > 1e-12F ? mapped / std::sqrt(mapped2) : n;
 }
 
-/// On wo's side: the mapped normal, else the interpolated one, else the geometric one.
-glm::vec3 normalFor(const Material& m, const SurfacePoint& point, const glm::vec3& wo, bool backSide) noexcept {
+/// On wo's side: the interpolated normal, else the geometric one.
+glm::vec3 unmappedNormalFor(const SurfacePoint& point, const glm::vec3& wo, bool backSide) noexcept {
     const float side = backSide ? -1.0F : 1.0F;
-    if (m.normalTexture) {
-        const glm::vec3 mapped = side * mappedNormal(m, point);
-        if (glm::dot(mapped, wo) > 0.0F) return mapped;
-    }
     const glm::vec3 shading = side * point.shadingNormal;
     return glm::dot(shading, wo) > 0.0F ? shading : side * point.geometricNormal;
+}
+
+/// On wo's side: the mapped normal, else that without a map.
+glm::vec3 normalFor(const Material& m, const SurfacePoint& point, const glm::vec3& wo, bool backSide) noexcept {
+    if (m.normalTexture) {
+        const glm::vec3 mapped = (backSide ? -1.0F : 1.0F) * mappedNormal(m, point);
+        if (glm::dot(mapped, wo) > 0.0F) return mapped;
+    }
+    return unmappedNormalFor(point, wo, backSide);
 }
 
 /// True when a mirror's direction, and that of glass of this ior (0: no refraction), leave on the side that the true
@@ -215,6 +220,12 @@ SurfaceModel& SurfaceModel::operator=(SurfaceModel&&) noexcept = default;
 
 LobeKinds SurfaceModel::possibleKinds(std::uint32_t material) const noexcept { return prepared_[material].kinds; }
 
+bool SurfaceModel::mapsDiffuseNormals() const noexcept {
+    for (std::size_t i = 0; i < prepared_.size(); ++i)
+        if ((*materials_)[i].normalTexture && (prepared_[i].kinds & kDiffuse) != kNoLobe) return true;
+    return false;
+}
+
 Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo) const noexcept {
     const Material& m = (*materials_)[point.material];
     const Prepared& prepared = prepared_[point.material];
@@ -231,6 +242,7 @@ Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo) const no
         normal = bentNormal(normal, geometric, wo, !refracts ? 0.0F : backSide ? 1.0F / m.ior : m.ior);
     }
     Bsdf result(Frame(normal), geometric, backSide, isVolume(m) && glass > 0.0F);
+    if (m.normalTexture) result.setUnmappedNormal(unmappedNormalFor(point, wo, backSide));
     if (opaque > 0.0F) {
         const CoatTerms coat = prepared.textured ? coatTerms(m, r, rules_, *tables_, prepared.table) : prepared.coat;
         result.add({DiffuseLobe{r.baseColor * coat.k, coat.a, coat.b}, opaque, 0.0F, kDiffuse, false}, wo);

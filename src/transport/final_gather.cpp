@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <pellucid/math/constants.h>
 #include <pellucid/math/frame.h>
+#include <pellucid/math/hash.h>
 
 #include "gather_gradients.h"
 #include "gather_grid.h"
@@ -59,17 +61,23 @@ void addIrradiance(const GatherGrid& grid, const Frame& frame, IrradianceRecord&
 
 }  // namespace
 
-IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const GatherOptions& options, std::uint64_t key) {
-    const Frame frame(point.normal);
+IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const GatherOptions& options, std::uint64_t key,
+                              LightByDirection* light) {
+    const Frame frame(point.unmappedNormal);
     const GatherGrid grid = gather(walk, point, frame, options, key);
     IrradianceRecord record;
     record.position = point.position;
-    record.normal = point.normal;
+    record.normal = point.unmappedNormal;
     addIrradiance(grid, frame, record);
     addRotation(grid, frame, record);
     addTranslation(grid, frame, kNearestShare * options.minRadius, record);
     setRadius(grid, frame, options, record);
     setBlocked(grid, frame, options.reach * record.radius, record);
+    if (light != nullptr) {
+        std::vector<Rgb> radiance;
+        for (const GatherCell& cell : grid.cells) radiance.push_back(cell.radiance);
+        *light = packByDirection(radiance, grid.elevations, grid.azimuths, hashCombine(options.seed, key));
+    }
     return record;
 }
 

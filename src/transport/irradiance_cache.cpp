@@ -22,6 +22,8 @@ constexpr float kTabellionNormals = 0.0151922F, kTabellionError = 0.25F;
 /// A shadow ray between a record and a point runs this share of their distance above both: over the surface's own bumps,
 /// under what stands in the way.
 constexpr float kLift = 0.1F;
+/// Cosine of a degree: a normal that is mapped by less is as one of the surface, by the rotational gradient.
+constexpr float kUnturned = 0.99985F;
 constexpr float kSilent = std::numeric_limits<float>::infinity();
 
 /// The azimuth's sector around the record's normal.
@@ -108,15 +110,16 @@ void IrradianceCache::place(std::uint32_t node, const glm::vec3& lower, float si
     }
 }
 
-void IrradianceCache::adopt(const IrradianceRecord& record, float reach) {
+void IrradianceCache::adopt(const IrradianceRecord& record, float reach, const LightByDirection* light) {
     records_.push_back(record);
     reaches_.push_back(reach);
+    if (light != nullptr) lights_.push_back(*light);
     place(0, lower_, size_, static_cast<std::uint32_t>(records_.size() - 1), reach);
 }
 
-void IrradianceCache::insert(IrradianceRecord record) {
+void IrradianceCache::insert(IrradianceRecord record, const LightByDirection* light) {
     clampWithNeighbours(record);
-    adopt(record, record.radius * error_);
+    adopt(record, record.radius * error_, light);
 }
 
 /// Each radius by the others' plus their distance: a record finds out from its neighbours what its own rays have missed.
@@ -200,6 +203,12 @@ bool IrradianceCache::covers(const glm::vec3& position, const glm::vec3& normal,
 
 std::optional<Irradiance> IrradianceCache::lookup(const glm::vec3& position, const glm::vec3& normal,
                                                   std::uint64_t* rays) const noexcept {
+    return lookup(position, normal, normal, rays);
+}
+
+std::optional<Irradiance> IrradianceCache::lookup(const glm::vec3& position, const glm::vec3& normal,
+                                                  const glm::vec3& mapped, std::uint64_t* rays) const noexcept {
+    const bool turned = !lights_.empty() && glm::dot(normal, mapped) < kUnturned;
     Irradiance sum;
     float weights = 0.0F;
     forNear(position, [&](std::uint32_t i) {
@@ -208,9 +217,14 @@ std::optional<Irradiance> IrradianceCache::lookup(const glm::vec3& position, con
         const float error = judge(r, offset, normal, error_).error;
         if (error >= error_ || isBlocked(r, position, normal, rays)) return;
         const float weight = weightOf(error);
-        const Rgb e = extrapolate(r, offset, normal);
+        Rgb e = extrapolate(r, offset, turned ? normal : mapped), grazing = r.grazingShare;
+        if (turned) {
+            const TurnedLight light = turnLight(lights_[i], Frame(r.normal).toLocal(mapped));
+            e *= light.ratio;
+            grazing = light.grazingShare;
+        }
         sum.plain += weight * e;
-        sum.grazing += weight * e * r.grazingShare;
+        sum.grazing += weight * e * grazing;
         weights += weight;
         ++sum.records;
     });

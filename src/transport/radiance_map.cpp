@@ -19,9 +19,10 @@ constexpr float kFarthest = 1e6F;
 /// What a look-up visits: small, so that few cache lines are touched.
 struct RadianceSite {
     glm::vec3 position{0.0F}, normal{0.0F};
-    float radius = 0.0F;      ///< of the density estimate
-    float reach = 0.0F;       ///< of look-ups
-    float freeRadius = 0.0F;  ///< reachable all around; farther away the point's sectors decide
+    float radius = 0.0F;               ///< of the density estimate
+    float reach = 0.0F;                ///< of look-ups
+    float freeRadius = 0.0F;           ///< reachable all around; farther away the point's sectors decide
+    float above = 0.0F, below = 0.0F;  ///< heights of look-ups that are on this surface
 };
 
 /// The nearest radiance point on the same side that can see the place.
@@ -42,6 +43,7 @@ struct NearestSite {
         if (glm::dot(s.normal, normal) < kMinNormalCosine) return true;
         const glm::vec3 offset = point - s.position;
         const float height = glm::dot(offset, normal);
+        if (height > s.above || height < -s.below) return true;
         if (height * height > 0.04F * s.radius * s.radius || distance2 > s.reach * s.reach) return true;
         if (distance2 > s.freeRadius * s.freeRadius) {
             const float free = points[index].reach.free[Reach::sector(Frame(s.normal), offset)];
@@ -68,7 +70,7 @@ struct RadianceMap::Impl {
         sites.clear();
         for (const RadiancePoint& p : points)
             sites.push_back({p.position, p.normal, p.radius, p.lookup,
-                             *std::min_element(p.reach.free.begin(), p.reach.free.end())});
+                             *std::min_element(p.reach.free.begin(), p.reach.free.end()), p.above, p.below});
         tree = std::make_unique<PointTree<RadianceSite>>(sites);
     }
 
@@ -109,7 +111,7 @@ RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& ph
         p.irradiance += directIrradiance(scene, p, options, before + i);
     });
     if (before > 0) sortAlongMortonCurve(points);
-    impl_->rays = fresh * (static_cast<std::uint64_t>(options.lampSamples) + 2 * kSectors);
+    impl_->rays = fresh * (static_cast<std::uint64_t>(options.lampSamples) + 2 * kSectors + 2);
     impl_->index(farthestLookup(options.maxRadius));
 }
 

@@ -23,6 +23,7 @@ constexpr float kSectorHeight = 0.05F;
 struct NearestPhotons {
     const PhotonList& photons;
     glm::vec3 point, normal;
+    float above, below;
     int wanted;
     float radius2;
     int found = 0;
@@ -38,6 +39,7 @@ struct NearestPhotons {
         if (glm::dot(p.normal, normal) < kMinNormalCosine) return true;
         const float height = glm::dot(p.position - point, normal);
         if (height * height > kMaxPlaneDistance * kMaxPlaneDistance * std::max(distance2, 1e-8F)) return true;
+        if (height > above || height < -below) return true;
         const auto begin = heap.begin();
         if (found == wanted) {
             std::pop_heap(begin, begin + found);
@@ -74,11 +76,22 @@ struct NeighbourDistance {
     }
 };
 
+/// Sheets a few millimetres apart (a page on a table) face the same way and are not the same surface.
+void measureClearance(const Scene& scene, RadiancePoint& p, float farthest) noexcept {
+    const auto half = [&](const glm::vec3& direction) {
+        const auto hit = scene.intersect(Ray{offsetOrigin(p.position, direction), direction, farthest}, 0.0F);
+        return hit ? 0.5F * hit->distance : farthest;
+    };
+    p.above = half(p.normal);
+    p.below = half(-p.normal);
+}
+
 /// Short rays along the surface, as far as look-ups reach: two a sector. A sector is as free as the shortest of the rays at
 /// its borders and in its middle, so that hardly any of its area lies behind a wall.
 void measureReach(const Scene& scene, RadiancePoint& p) noexcept {
     const Frame frame(p.normal);
-    const glm::vec3 origin = offsetOrigin(p.position + p.normal * (kSectorHeight * p.radius), p.normal);
+    const glm::vec3 origin =
+        offsetOrigin(p.position + p.normal * std::min(kSectorHeight * p.radius, p.above), p.normal);
     constexpr std::size_t kRays = 2 * kSectors;
     std::array<glm::vec3, kRays> direction{};
     std::array<float, kRays> distance{};
@@ -145,8 +158,10 @@ Rgb directIrradiance(const Scene& scene, const RadiancePoint& p, const RadianceM
 void estimateIndirect(const Scene& scene, const IndirectPhotons& photons, const PointTree<Photon>& tree,
                       RadiancePoint& p, const RadianceMapOptions& options) {
     const float maxRadius = options.maxRadius;
-    NearestPhotons nearest{photons.photons, p.position, p.normal, std::min(options.neighbours, kMaxNeighbours),
-                           maxRadius * maxRadius};
+    measureClearance(scene, p, kMaxPlaneDistance * farthestLookup(maxRadius));
+    NearestPhotons nearest{
+        photons.photons,      p.position, p.normal, p.above, p.below, std::min(options.neighbours, kMaxNeighbours),
+        maxRadius * maxRadius};
     tree.search(p.position, nearest);
     const bool bounded = nearest.found < nearest.wanted;
     p.radius = bounded ? maxRadius : std::sqrt(nearest.radius2);

@@ -38,6 +38,8 @@ struct RadiancePoint {
     Rgb irradiance{0.0F}, caustic{0.0F};
     float radius = 0.0F, lookup = 0.0F;  ///< of the estimate and of look-ups
     Reach reach;
+    /// Heights over and under the point that are still its surface's: half the way to the next one there.
+    float above = 0.0F, below = 0.0F;
 };
 
 /// The photons of a global pass that did not come directly, in Morton order.

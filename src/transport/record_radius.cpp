@@ -18,6 +18,9 @@ constexpr float kTabellionRadius = 2.0F;
 /// At the default error as many records as by Ward's metric, about.
 constexpr double kHessianScale = 0.5;
 constexpr double kHessianPower = 0.25;
+/// Of the harmonic mean distance: what few rays say of curvature is not believed farther. A record that sees hardly more than a
+/// dark thing near by finds no curvature at all, and would speak its darkness everywhere.
+constexpr float kMostHessian = 4.0F;
 /// Of a record's width to its length.
 constexpr float kMostAspect = 2.0F;
 /// What the gather did not hit lies this many scene radii away.
@@ -45,7 +48,7 @@ constexpr float kNearestShare = 0.05F, kNearestOfScene = 1e-7F;
                                   IrradianceRecord& record) {
     const auto size = static_cast<double>(options.sceneRadius);
     const auto irradiance = static_cast<double>(average(record.irradiance));
-    if (!(irradiance > 0.0)) return static_cast<float>(kFarthest);
+    if (!(irradiance > 0.0)) return record.harmonicDistance;
     const TangentCurvature t = tangentCurvature(
         occlusionHessian(g, frame, std::max(kNearestShare * options.minRadius, kNearestOfScene * options.sceneRadius),
                          kSky * options.sceneRadius),
@@ -54,9 +57,9 @@ constexpr float kNearestShare = 0.05F, kNearestOfScene = 1e-7F;
         const double bent = std::fabs(curvature) * size * size / irradiance;
         return bent > 0.0 ? std::min(kHessianScale * size * std::pow(bent, -kHessianPower), kFarthest) : kFarthest;
     };
-    const float narrow = std::clamp(static_cast<float>(radius(t.first)), options.minRadius, options.maxRadius);
-    const float wide =
-        std::min(static_cast<float>(radius(t.second)), std::min(options.maxRadius, kMostAspect * narrow));
+    const float most = std::clamp(kMostHessian * record.harmonicDistance, options.minRadius, options.maxRadius);
+    const float narrow = std::clamp(static_cast<float>(radius(t.first)), options.minRadius, most);
+    const float wide = std::min(static_cast<float>(radius(t.second)), std::min(most, kMostAspect * narrow));
     const float aspect = narrow > 0.0F ? std::max(1.0F, wide / narrow) : 1.0F;
     record.squeeze = t.axis * std::sqrt(aspect * aspect - 1.0F);
     return aspect * narrow;

@@ -204,8 +204,15 @@ GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexce
         const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo);
         const float footprint = state.ray.footprintAtOrigin + state.ray.footprintSpread * state.pathLength;
         if ((bsdf.kinds() & kDiffuse) != kNoLobe)
-            return {true,      hit->point.position,  bsdf.shadingNormal(), bsdf.geometricNormal(),
-                    footprint, state.ray.absorption, bsdf.diffuse(),       luminance(state.throughput),
+            return {true,
+                    hit->point.position,
+                    bsdf.shadingNormal(),
+                    bsdf.geometricNormal(),
+                    bsdf.unmappedNormal(),
+                    footprint,
+                    state.ray.absorption,
+                    bsdf.diffuse(),
+                    luminance(state.throughput),
                     0.0F};
         const Vertex vertex{*hit, bsdf, wo, footprint, glm::vec3(0.0F)};
         sampler.setDimension(dimension + kLobeChoice);

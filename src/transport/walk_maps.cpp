@@ -99,7 +99,7 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
         return state.chainsNext ? kDiffuse : kNoLobe;
     }
     if (maps.cache != nullptr) {
-        if (const auto cached = maps.cache->lookup(position, normal, &rays_)) {
+        if (const auto cached = maps.cache->lookup(position, vertex.bsdf.unmappedNormal(), normal, &rays_)) {
             state.radiance.add(state.ledger.pathAfter(kDiffuse).open(),
                                state.throughput * outgoing * cached->through(lobe));
             state.chainsNext = maps.causticChains;

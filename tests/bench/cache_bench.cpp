@@ -39,7 +39,7 @@ constexpr double kOverlap = 4.0;
     std::mt19937 random(11);
     std::uniform_real_distribution<float> u(0.0F, 1.0F);
     const auto radius = static_cast<float>(std::sqrt(kOverlap / (3.14159265 * static_cast<double>(count)))) / kError;
-    IrradianceCache cache(unitBox(), kError);
+    IrradianceCache cache(unitBox(), kError, CacheMetric::Hessian);
     for (std::size_t i = 0; i < count; ++i) cache.insert(recordAt(u(random), u(random), radius));
     return cache;
 }
@@ -88,6 +88,8 @@ void record(benchmark::State& state) {
     }
     GatherOptions options;
     options.rays = 256;
+    options.metric = CacheMetric::Hessian;
+    options.sceneRadius = scene.radius();
     const std::uint64_t before = walk.rays();
     std::uint64_t key = 0;
     for ([[maybe_unused]] auto _ : state) {

@@ -1,5 +1,5 @@
-/// Where records do not pay: among fine leaves every point wants a record of its own, and gathers for itself instead. Under
-/// normal maps records are of the shading normal, so that nothing of the map is lost.
+/// Where records do not pay: among fine leaves every point wants a record of its own, and gathers for itself instead. Rough
+/// normal maps, by contrast, cost no records: each answers for all normals (mapped_normals_test.cpp).
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -170,14 +170,28 @@ TEST_F(Views, AStaleFileIsRefusedWithTheReason) {
     other.settings.maxDepth = 3;
     EXPECT_NE(refusal(scene_, other, "cache").find("path.max_depth=0 there, 3 here"), std::string::npos);
     SceneDescription changed = ballInCorner();
-    changed.contentHash = "another";
+    changed.materials[0].baseColor.r = 0.6F;
     const Scene scene(std::move(changed), std::nullopt, SceneOptions{}, workers_);
-    EXPECT_NE(refusal(scene, smallRequest("camera 1", 1), "cache").find("scene"), std::string::npos);
+    EXPECT_NE(
+        refusal(scene, smallRequest("camera 1", 1), "cache").find("made from something else: geometry, materials"),
+        std::string::npos);
     // What only concerns the view is free.
     other = smallRequest("camera 1", 1);
     other.settings.alpha = 0.8;
     other.seed = 9;
     const ReuseReport reuse = renderWith(other, "cache").record.reuse;
+    EXPECT_GT(reuse.recordsReused, 5 * reuse.recordsNew);
+}
+
+TEST_F(Views, ACameraThatMovedInTheSceneFileReusesWhatIsLearnt) {
+    (void)renderWith(smallRequest("camera 1", 1), "cache");
+    SceneDescription moved = ballInCorner();
+    moved.contentHash = "the file with a moved camera";
+    moved.cameras[1].toWorld[3] += glm::dvec4(0.02, 0.01, 0.0, 0.0);
+    const Scene scene(std::move(moved), std::nullopt, SceneOptions{}, workers_);
+    RenderRequest request = smallRequest("camera 1", 1);
+    request.cacheFile = path("cache");
+    const ReuseReport reuse = render(scene, request, workers_).record.reuse;
     EXPECT_GT(reuse.recordsReused, 5 * reuse.recordsNew);
 }
 
@@ -198,7 +212,7 @@ TEST_F(Views, ADamagedFileIsRefused) {
     for (const std::size_t size : {std::size_t{0}, std::size_t{20}, whole.size() / 2, whole.size() - 1})
         EXPECT_NE(refused(whole.substr(0, size)).find("damaged"), std::string::npos) << size;
     std::string version = whole;
-    version.replace(version.find(" 2\n"), 3, " 7\n");
+    version.replace(version.find(" 3\n"), 3, " 7\n");
     EXPECT_NE(refused(version).find("version"), std::string::npos);
 }
 

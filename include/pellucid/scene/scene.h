@@ -69,6 +69,9 @@ public:
     [[nodiscard]] const Normalisation& normalisation() const noexcept;
     [[nodiscard]] std::uint64_t triangles() const noexcept;  ///< with instances counted each
     [[nodiscard]] const std::string& hash() const noexcept;  ///< of file, environment and options
+    /// Of geometry, materials, lights and environment as they stand: cameras, names and how the file says it do not matter.
+    /// Worked out at each call.
+    [[nodiscard]] std::string lightHash() const;
     /// Kinds of lobes anywhere in the scene.
     [[nodiscard]] LobeKinds lobeKinds() const noexcept;
 

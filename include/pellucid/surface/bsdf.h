@@ -86,6 +86,8 @@ public:
 
     /// Kinds of lobes that this material can have anywhere (textures taken into account conservatively).
     [[nodiscard]] LobeKinds possibleKinds(std::uint32_t material) const noexcept;
+    /// Whether some material has a diffuse lobe under a normal map.
+    [[nodiscard]] bool mapsDiffuseNormals() const noexcept;
 
     [[nodiscard]] const std::vector<Material>& materials() const noexcept { return *materials_; }
     [[nodiscard]] const LobeRules& rules() const noexcept { return rules_; }
@@ -175,6 +177,9 @@ public:
     /// The (normal-mapped) shading normal on wo's side, and the geometric normal on the same side as wo.
     [[nodiscard]] const glm::vec3& shadingNormal() const noexcept { return frame_.normal; }
     [[nodiscard]] const glm::vec3& geometricNormal() const noexcept { return geometricNormal_; }
+    /// The shading normal as it is without a normal map: what irradiance records are of.
+    [[nodiscard]] const glm::vec3& unmappedNormal() const noexcept { return unmappedNormal_; }
+    void setUnmappedNormal(const glm::vec3& normal) noexcept { unmappedNormal_ = normal; }
     /// True when wo is on the back of the surface (inside of a closed body).
     [[nodiscard]] bool backSide() const noexcept { return backSide_; }
     /// True when light that is transmitted enters or leaves a volume (thickness > 0), not a thin wall.
@@ -196,7 +201,7 @@ private:
     void evaluateLocal(const glm::vec3& wo, const glm::vec3& wi, LobeKinds kinds, TransportMode mode,
                        BsdfValue& sum) const noexcept;
     Frame frame_;
-    glm::vec3 geometricNormal_;
+    glm::vec3 geometricNormal_, unmappedNormal_;
     DiffuseLobe diffuse_;
     std::array<Lobe, kMaxLobes> lobes_;
     int count_ = 0;

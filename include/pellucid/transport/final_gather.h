@@ -20,8 +20,9 @@ struct GatherOptions {
     float reach = 1.0F;        ///< of the radius: how far look-ups may lie
 };
 
-/// `point` must be valid. `key` identifies the record among all of the render. Returns a record with bounded radius.
+/// `point` must be valid; the record is of its normal without normal maps. `key` identifies the record among all of the render.
+/// `light` receives what came by direction (null: nobody asks). Returns a record with bounded radius.
 [[nodiscard]] IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const GatherOptions& options,
-                                            std::uint64_t key);
+                                            std::uint64_t key, LightByDirection* light = nullptr);
 
 }  // namespace pellucid

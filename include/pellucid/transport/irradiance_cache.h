@@ -18,6 +18,7 @@
 #include <pellucid/math/rgb.h>
 #include <pellucid/surface/bsdf.h>
 #include <pellucid/transport/cache_metric.h>
+#include <pellucid/transport/light_by_direction.h>
 
 namespace pellucid {
 
@@ -69,13 +70,18 @@ public:
 
     /// Adds a record; clamps its radius and its neighbours' (each by the other's plus their distance);
     /// by Hessian only those of other views.
-    void insert(IrradianceRecord record);
+    /// `light`: what a record needs to answer for mapped normals; of all records or of none (null).
+    void insert(IrradianceRecord record, const LightByDirection* light = nullptr);
 
     /// Adds a record as it is, found within `reach`: from records() and reaches(), in order, the same cache comes back.
-    void adopt(const IrradianceRecord& record, float reach);
+    void adopt(const IrradianceRecord& record, float reach, const LightByDirection* light = nullptr);
 
-    /// Empty where no record speaks. `rays` counts the shadow rays (null: nobody does).
+    /// Empty where no record speaks. `rays` counts the shadow rays (null: nobody does). `normal`: without normal maps.
     [[nodiscard]] std::optional<Irradiance> lookup(const glm::vec3& position, const glm::vec3& normal,
+                                                   std::uint64_t* rays = nullptr) const noexcept;
+    /// The same on a normal that a map has turned to `mapped`: the same records speak.
+    [[nodiscard]] std::optional<Irradiance> lookup(const glm::vec3& position, const glm::vec3& normal,
+                                                   const glm::vec3& mapped,
                                                    std::uint64_t* rays = nullptr) const noexcept;
 
     /// For layers: the records that speak there, with their weights, and the mildest objection of one that does not.
@@ -94,6 +100,8 @@ public:
     [[nodiscard]] const std::vector<IrradianceRecord>& records() const noexcept { return records_; }
     /// By record: how far it is looked for. Its radius may have shrunk since.
     [[nodiscard]] const std::vector<float>& reaches() const noexcept { return reaches_; }
+    /// By record: empty where no normal is mapped.
+    [[nodiscard]] const std::vector<LightByDirection>& lights() const noexcept { return lights_; }
     [[nodiscard]] float error() const noexcept { return error_; }
     [[nodiscard]] CacheMetric metric() const noexcept { return metric_; }
 
@@ -125,6 +133,7 @@ private:
     std::vector<Node> nodes_;
     std::vector<IrradianceRecord> records_;
     std::vector<float> reaches_;
+    std::vector<LightByDirection> lights_;
 };
 
 }  // namespace pellucid

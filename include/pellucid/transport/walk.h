@@ -82,8 +82,9 @@ struct FirstHit {
 struct GatherPoint {
     bool valid = false;
     glm::vec3 position{0.0F}, normal{0.0F}, geometricNormal{0.0F};
-    float footprint = 0.0F;  ///< width of a pixel there, scene units
-    Rgb absorption{0.0F};    ///< of the medium in which the gather rays start, per scene unit
+    glm::vec3 unmappedNormal{0.0F};  ///< the normal without normal maps: a record's
+    float footprint = 0.0F;          ///< width of a pixel there, scene units
+    Rgb absorption{0.0F};            ///< of the medium in which the gather rays start, per scene unit
     DiffuseLobe lobe;
     float throughput = 0.0F;  ///< luminance of the path's throughput there
     float directLuminance = 0.0F;
