@@ -21,7 +21,7 @@ constexpr double kMostGrowth = 2.0;
 /// Time of a ray of the caustic photons, with what is made of them, in units of an eye ray's; as measured.
 constexpr double kPhotonRayTime = 1.75;
 /// Of a budget, for one iteration: else it would be overrun; or as many seconds, which may be.
-constexpr double kMostOfBudget = 0.04, kMostSeconds = 0.6;
+constexpr double kMostOfBudget = 0.04, kMostSeconds = 0.4;
 
 }  // namespace
 
