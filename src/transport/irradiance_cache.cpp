@@ -17,6 +17,9 @@ constexpr float kMinFactor = 0.05F, kMaxFactor = 4.0F;
 constexpr int kMaxDepth = 20;
 /// A record does not speak for points that lie behind it by more than this share of its radius.
 constexpr float kBehind = 0.02F;
+/// Nor for points off its surface, above or below, by more than this share of their distance: another sheet, a step. (And by
+/// what floats make of a flat surface, in scene units.)
+constexpr float kStep = 0.02F, kRounding = 2e-6F;
 /// 1 - n.n_i that Tabellion's error of the normals compares with: of 10 degrees, at the default error.
 constexpr float kTabellionNormals = 0.0151922F, kTabellionError = 0.25F;
 /// A shadow ray between a record and a point runs this share of their distance above both: over the surface's own bumps,
@@ -148,8 +151,12 @@ IrradianceCache::Judged IrradianceCache::judge(const IrradianceRecord& r, const 
     const float distance2 = glm::dot(offset, offset) + along * along;
     const float reach = limit * r.radius;
     if (!(distance2 < reach * reach)) return {kSilent, Silence::Distance};
-    if (glm::dot(offset, normal + r.normal) < -2.0F * kBehind * r.radius) return {kSilent, Silence::Behind};
-    const float distance = std::sqrt(distance2) / r.radius, turn2 = std::max(0.0F, 1.0F - glm::dot(normal, r.normal));
+    const float height = 0.5F * glm::dot(offset, normal + r.normal),
+                turn2 = std::max(0.0F, 1.0F - glm::dot(normal, r.normal));
+    // Along an arc a chord is square to the mean normal: off it by more than its ends turn is another surface.
+    const float step = kRounding + glm::length(offset) * (kStep + std::sqrt(turn2));
+    if (height < -kBehind * r.radius || std::fabs(height) > step) return {kSilent, Silence::Behind};
+    const float distance = std::sqrt(distance2) / r.radius;
     float error = 0.0F, ofNormals = std::sqrt(turn2);
     switch (metric_) {
         case CacheMetric::Ward:

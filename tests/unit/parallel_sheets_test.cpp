@@ -1,10 +1,12 @@
 /// Two sheets that face the same way, 3 mm apart (a page over a table, lit from above), are two surfaces to the global map: no
 /// photon of the page counts on the table below, and no place of the page answers for it.
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <pellucid/scene/scene.h>
+#include <pellucid/transport/irradiance_cache.h>
 #include <pellucid/transport/radiance_map.h>
 
 #include "../../src/study/check_scenes.h"
@@ -47,6 +49,30 @@ TEST(ParallelSheets, DoNotShareGlobalPhotons) {
         }
     }
     EXPECT_TRUE(map.find(inScene(0.0, 0.0, 0.011), up)) << "the table has places of its own";
+}
+
+/// Nor does a record of the page speak for the table, or the table's for the page; along a bent sheet records go on speaking.
+TEST(ParallelSheets, DoNotShareRecords) {
+    Bounds bounds;
+    bounds.extend(glm::vec3(-1.0F));
+    bounds.extend(glm::vec3(1.0F));
+    const glm::vec3 up(0.0F, 1.0F, 0.0F);
+    IrradianceCache cache(bounds, 0.3F);
+    IrradianceRecord record;
+    record.normal = up;
+    record.irradiance = Rgb(1.0F);
+    record.radius = record.harmonicDistance = 0.4F;
+    cache.insert(record);
+    const auto apart = static_cast<float>(kApart);
+    for (const float distance : {0.01F, 0.05F, 0.1F}) {
+        EXPECT_TRUE(cache.lookup({distance, 0.0F, 0.0F}, up)) << distance;
+        EXPECT_FALSE(cache.lookup({distance, -apart, 0.0F}, up)) << distance;
+        EXPECT_FALSE(cache.lookup({distance, apart, 0.0F}, up)) << distance;
+    }
+    for (const float angle : {-0.15F, 0.1F, 0.15F}) {  // on a cylinder of radius 0.4 that stands out at the record
+        const glm::vec3 normal(std::sin(angle), std::cos(angle), 0.0F);
+        EXPECT_TRUE(cache.lookup(0.4F * (normal - up), normal)) << angle;
+    }
 }
 
 }  // namespace

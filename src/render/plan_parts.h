@@ -1,0 +1,31 @@
+/// The parts of makePlan(): each decides about one side of the render and writes down why.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include <pellucid/render/plan.h>
+
+namespace pellucid {
+
+[[nodiscard]] inline bool isOff(const std::string& choice) { return choice == "off"; }
+[[nodiscard]] inline bool isOn(const std::string& choice) { return choice == "on"; }
+
+inline void decide(Plan& plan, std::string name, std::string choice, std::string reason, bool overridden = false) {
+    plan.decisions.push_back({std::move(name), std::move(choice), std::move(reason), overridden});
+}
+
+/// Trains emission guiding; returns how many pilot photons were useful.
+[[nodiscard]] std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request,
+                                        const Survey& seen, const Workers& workers);
+void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                  const Workers& workers);
+/// Cache and global map.
+void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                  const Workers& workers);
+/// Progressive photon mapping: what the caustic map does not hold.
+void planOthers(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                const Workers& workers);
+
+}  // namespace pellucid

@@ -1,0 +1,198 @@
+// The plan's photons: a pilot finds where useful ones start, and each pass gets its size.
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <pellucid/render/caustic_links.h>
+#include <pellucid/transport/caster_aim.h>
+#include <pellucid/transport/photon_trace.h>
+
+#include "caustic_choice.h"
+#include "photon_memory.h"
+#include "plan_parts.h"
+#include "stages.h"
+
+namespace pellucid {
+
+namespace {
+
+/// Pilot photons, then again this many times more where the first saw nothing useful.
+constexpr std::uint32_t kPilotPaths = 60'000;
+constexpr std::uint32_t kPilotRetryFactor = 10;
+constexpr double kEnoughUseful = 400;
+/// With fewer useful photons in the first look the next one is aimed at the casters.
+constexpr double kFewUseful = 100;
+constexpr std::uint64_t kPilotRounds = 6;
+/// Of a budget of time, for the pilot: then it makes do with what it found.
+constexpr double kPilotShare = 0.03;
+/// Photons of a budget of fewer seconds are fewer in proportion, down to a share: a first picture is worth more than a fine one.
+constexpr double kShortBudget = 2.5, kLeastOfShort = 0.2;
+constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
+constexpr std::uint32_t kGlobalPaths = 75'000;
+/// Caustic photon paths an iteration: so many that this many are useful, between two bounds.
+constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
+constexpr double kOtherPathsPerPixel = 1.0;
+
+[[nodiscard]] std::uint32_t withinShortBudget(double paths, const Budget& budget) {
+    const double left = budget.seconds.value_or(kShortBudget) - budget.startedSecondsAgo;
+    const double share = budget.seconds ? std::clamp(left / kShortBudget, kLeastOfShort, 1.0) : 1.0;
+    return static_cast<std::uint32_t>(share * paths);
+}
+
+/// Of the paths that would be useful if they started without guide.
+[[nodiscard]] double shareWithoutGuide(const std::vector<UsefulEmission>& useful, std::uint32_t paths) {
+    double sum = 0.0;
+    for (const UsefulEmission& e : useful) sum += 1.0 / static_cast<double>(e.density);
+    return sum / paths;
+}
+
+}  // namespace
+
+std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                          const Workers& workers) {
+    std::vector<UsefulEmission> useful;
+    std::uint32_t paths = kPilotPaths;
+    double unguided = 0.0;
+    bool aimed = false;
+    CasterTally tally(scene);
+    const WallClock::time_point began = WallClock::now();
+    const std::optional<double>& budget = request.budget.seconds;
+    for (std::uint64_t attempt = 0; attempt < kPilotRounds; ++attempt) {
+        const EmissionGuide guide(scene.lights(), useful);
+        CausticPass pass = traceCausticPhotons(scene, guide, {request.seed, kPilotPass + attempt, paths}, &seen.visible,
+                                               workers, &tally);
+        plan.pilotRays += pass.rays;
+        plan.pilotPhotons += pass.emitted;
+        // Each guided look replaces the one before: its sample is the better one. Enough when it hardly finds more.
+        const auto before = static_cast<double>(useful.size()), now = static_cast<double>(pass.useful.size());
+        if (now == 0.0 && attempt > 1) break;  // what it began with was better
+        useful = std::move(pass.useful);
+        plan.usefulShare = now / paths;
+        if (!(unguided > 0.0)) unguided = shareWithoutGuide(useful, paths);
+        if (attempt == 0 && now < kFewUseful) {
+            useful = aimAtCasters(scene, request.seed, workers);
+            aimed = true;
+            continue;
+        }
+        if (now == 0.0)
+            paths = kPilotPaths * kPilotRetryFactor;
+        else if (now >= kEnoughUseful && now < 1.3 * before && !aimed)
+            break;
+        if (now > 0.0 && budget && secondsSince(began) > kPilotShare * *budget) break;
+        aimed = false;
+    }
+    plan.training = std::move(useful);
+    plan.guideGain =
+        unguided > 0.0 && !isOff(request.settings.guiding) ? std::max(1.0, plan.usefulShare / unguided) : 1.0;
+    plan.causticLinks = causticLinks(scene, tally, seen.receivers);
+    return plan.training.size();
+}
+
+void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                  const Workers& workers) {
+    const Settings& s = request.settings;
+    const LobeKinds kinds = scene.lobeKinds();
+    if (isOff(s.causticMap)) return decide(plan, "caustic map", "off", "asked for; its class is path traced", true);
+    if ((kinds & kSpecular) == kNoLobe)
+        return decide(plan, "caustic map", "off",
+                      fmt::format("no material casts caustics: roughness above {} and no glass", s.castRoughness));
+    if (seen.receivers == 0) return decide(plan, "caustic map", "off", "the camera sees no diffuse surface");
+    if (s.causticMap == "auto" && !isOn(s.chance) && !isOff(s.cache) && request.method == Method::Photon)
+        if (const auto reason = causticsLeftToEyePaths(scene)) {
+            plan.causticsToEyePaths = true;
+            return decide(plan, "caustic map", "off", *reason);
+        }
+    const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
+    if (useful == 0 && !isOn(s.causticMap) && request.method == Method::Photon)
+        return decide(plan, "caustic map", "off",
+                      fmt::format("0 of {} pilot photons arrived where the camera looks", plan.pilotPhotons));
+    plan.causticMap = true;
+    const double perPixel =
+        std::clamp(kUsefulPerPixel / std::max(plan.usefulShare, 1e-6), kPathsPerPixel, kMostPathsPerPixel);
+    const auto wanted = static_cast<double>(seen.points.size()) * perPixel;
+    plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
+                                              : withinShortBudget(std::clamp(wanted, 2e4, 4e6), request.budget);
+    const FittedPaths fitted = fitCausticPaths(plan.causticPaths, plan, scene, request, seen, workers);
+    plan.causticPaths = fitted.paths;
+    plan.mostCausticPaths = fitted.most;
+    if (s.causticRadius > 0.0) {
+        plan.adaptiveRadius = false;
+        plan.causticFootprints = static_cast<float>(s.causticRadius);
+    }
+    plan.alpha = static_cast<float>(s.alpha);
+    if (isOff(s.guiding)) plan.training.clear();
+    decide(plan, "caustic map", "on", fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons),
+           isOn(s.causticMap));
+    decide(
+        plan, "caustic photons", fmt::format("{} paths an iteration", plan.causticPaths),
+        fmt::format("{:.2g} a pixel", static_cast<double>(plan.causticPaths) / static_cast<double>(seen.points.size())),
+        s.causticPhotons >= 0);
+    if (!fitted.remark.empty()) decide(plan, "caustic photons", "fewer", fitted.remark, true);
+    if (s.kernel != Settings{}.kernel) decide(plan, "kernel", s.kernel, "asked for", true);
+    decide(plan, "kernel radius",
+           plan.adaptiveRadius ? "pixel by pixel" : fmt::format("{:.2f} pixel footprints", plan.causticFootprints),
+           plan.adaptiveRadius ? "grows until it holds 60 photons or meets an edge" : "asked for",
+           !plan.adaptiveRadius);
+    decide(plan, "emission guiding", isOff(s.guiding) ? "off" : "on",
+           fmt::format("{} useful starts in {} cells", useful, EmissionGuide(scene.lights(), plan.training).cells()),
+           isOff(s.guiding));
+}
+
+void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                  const Workers& workers) {
+    const Settings& s = request.settings;
+    if (isOff(s.cache)) {
+        decide(plan, "irradiance cache", "off", "asked for; indirect light is path traced", true);
+        return;
+    }
+    if (seen.receivers == 0) {
+        decide(plan, "irradiance cache", "off", "the camera sees no diffuse surface");
+        decide(plan, "global map", "off", "nothing gathers from it");
+        return;
+    }
+    plan.cache = plan.globalMap = true;
+    plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons)
+                                            : withinShortBudget(kGlobalPaths, request.budget);
+    const FittedPaths fitted = fitGlobalPaths(plan.globalPaths, plan, scene, request, workers);
+    plan.globalPaths = fitted.paths;
+    plan.mostGlobalPaths = fitted.most;
+    plan.growPhotons = s.globalPhotons < 0;
+    plan.growRays = s.gatherRays <= 0;
+    plan.globalMap = plan.globalPaths > 0;
+    plan.cacheChoice = isOn(s.cacheChoice);
+    plan.cacheMetric = s.cacheMetric == "ward"        ? CacheMetric::Ward
+                       : s.cacheMetric == "tabellion" ? CacheMetric::Tabellion
+                                                      : CacheMetric::Hessian;
+    if (s.cacheError > 0.0) plan.cacheError = static_cast<float>(s.cacheError);
+    if (s.gatherRays > 0) plan.gatherRays = s.gatherRays;
+    if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);
+    if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
+    const double share = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
+    decide(plan, "irradiance cache", "on", fmt::format("{:.1f} % of the pixels end at a diffuse surface", share),
+           isOn(s.cache));
+    decide(plan, "global map", plan.globalMap ? "on" : "off",
+           fmt::format("{} photon paths for the first generation of records{}", plan.globalPaths,
+                       plan.growPhotons ? ", half as many more for each next" : ""),
+           s.globalPhotons >= 0);
+    if (!fitted.remark.empty()) decide(plan, "global photons", "fewer", fitted.remark, true);
+}
+
+void planOthers(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
+                const Workers& workers) {
+    const int asked = request.settings.globalPhotons;
+    if (seen.receivers == 0) return decide(plan, "other photons", "off", "the camera sees no diffuse surface");
+    plan.otherPhotons = true;
+    const double wanted = kOtherPathsPerPixel * static_cast<double>(seen.points.size());
+    plan.globalPaths =
+        asked >= 0 ? static_cast<std::uint32_t>(asked) : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
+    const FittedPaths fitted = fitOtherPaths(plan.globalPaths, scene, request, seen, workers);
+    plan.globalPaths = fitted.paths;
+    decide(plan, "other photons", fmt::format("{} paths an iteration", plan.globalPaths),
+           fmt::format("{:.2g} a pixel; what came directly is sampled from the lamps",
+                       static_cast<double>(plan.globalPaths) / static_cast<double>(seen.points.size())),
+           asked >= 0);
+    if (!fitted.remark.empty()) decide(plan, "other photons", "fewer", fitted.remark, true);
+}
+
+}  // namespace pellucid
