@@ -30,7 +30,7 @@ class EyeSide {
 public:
     explicit EyeSide(const PreparedView& view) noexcept : view_(view) {}
 
-    /// After iterations 4, 8, 16, ...: samples go where the noise is. Returns how many times more photon paths would serve
+    /// After iterations 2, 4, 8, ...: samples go where the noise is. Returns how many times more photon paths would serve
     /// best; empty: their number stays.
     [[nodiscard]] std::optional<double> renewShares(Film& film, const CausticSide& caustics, std::uint32_t iteration);
 
