@@ -21,16 +21,20 @@ constexpr double kMostGrowth = 2.0;
 /// Time of a ray of the caustic photons, with what is made of them, in units of an eye ray's; as measured.
 constexpr double kPhotonRayTime = 1.75;
 /// Of a budget, for one iteration: else it would be overrun; or as many seconds, which may be.
-constexpr double kMostOfBudget = 0.04, kMostSeconds = 0.4;
+constexpr double kMostOfBudget = 0.04, kMostSeconds = 0.5;
 
 }  // namespace
+
+bool EyeSide::renewsShares(std::uint32_t samples) const noexcept {
+    return view_.plan.adaptive && samples >= kUniformIterations && (samples & (samples - 1)) == 0;
+}
 
 std::optional<double> EyeSide::renewShares(Film& film, const CausticSide& caustics, std::uint32_t iteration) {
     const std::uint32_t n = film.samples();
     const std::optional<double>& seconds = view_.request.budget.seconds;
     if (view_.plan.adaptive && view_.plan.causticMap && n == 0 && !(seconds && *seconds <= kShortBudget))
         film.setShares(std::vector<std::uint8_t>(film.pixels(), kFirstShare));
-    if (!view_.plan.adaptive || n < kUniformIterations || (n & (n - 1)) != 0) return std::nullopt;
+    if (!renewsShares(n)) return std::nullopt;
     const StageTimer timer(stage_);
     std::vector<PixelNoise> noise(film.pixels());
     double eyeRays = 0.0;
@@ -48,9 +52,13 @@ std::optional<double> EyeSide::renewShares(Film& film, const CausticSide& causti
     const Budget& b = view_.request.budget;
     const double once = stage_.seconds * static_cast<double>(film.pixels()) /
                         (scale * static_cast<double>(std::max<std::uint64_t>(1, film.taken())));
-    if (b.seconds)
-        limits.mostMean = static_cast<float>(std::min<double>(
-            limits.mostMean, std::max(kMostOfBudget * *b.seconds, kMostSeconds) / std::max(1e-9, once)));
+    if (b.seconds) {
+        const bool brief = *b.seconds <= kShortBudget;
+        const double affordable =
+            std::max(kMostOfBudget * *b.seconds, brief ? 0.0 : kMostSeconds) / std::max(1e-9, once);
+        limits.mostMean =
+            std::min(limits.mostMean, std::max(static_cast<float>(affordable), brief ? 1.0F : float{kFirstShare}));
+    }
     if (b.rays)
         limits.mostMean = static_cast<float>(std::min<double>(
             limits.mostMean, kMostOfBudget * static_cast<double>(*b.rays) / std::max(1.0, eyeRays * scale)));

@@ -32,6 +32,7 @@ public:
 
     /// After iterations 2, 4, 8, ...: samples go where the noise is. Returns how many times more photon paths would serve
     /// best; empty: their number stays.
+    [[nodiscard]] bool renewsShares(std::uint32_t samples) const noexcept;
     [[nodiscard]] std::optional<double> renewShares(Film& film, const CausticSide& caustics, std::uint32_t iteration);
 
     /// The samples of one iteration, all that `film` has as shares. Returns the rays, of the whole image.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDefaultError = 0.05;
 /// Kept of a budget for the files, about.
-constexpr double kSecondsToWritePixel = 6e-7;
+constexpr double kSecondsToWritePixel = 9e-7;
 
 [[nodiscard]] bool onlyError(const Budget& b) noexcept { return !b.samples && !b.seconds && !b.rays; }
 
@@ -35,7 +35,7 @@ bool Pace::finished() const {
     if (budget.samples && samplesPerPixel >= *budget.samples) return true;
     if (iterations == 0) return false;
     const double writing = kSecondsToWritePixel * static_cast<double>(film.pixels());
-    if (budget.seconds && seconds + 0.5 * secondsOfIteration + writing >= *budget.seconds) return true;
+    if (budget.seconds && seconds + 0.55 * secondsOfIteration + writing >= *budget.seconds) return true;
     if (budget.rays && rays + (rays - raysOnce) / (2 * iterations) >= *budget.rays) return true;
     const bool errorGiven = budget.error || onlyError(budget);
     if (errorGiven && film.samples() >= 4 && film.relativeError() <= budget.error.value_or(kDefaultError)) return true;

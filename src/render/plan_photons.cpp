@@ -52,7 +52,7 @@ constexpr double kOtherPathsPerPixel = 1.0;
 std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
                           const Workers& workers) {
     std::vector<UsefulEmission> useful;
-    std::uint32_t paths = kPilotPaths;
+    std::uint32_t paths = withinShortBudget(kPilotPaths, request.budget);
     double unguided = 0.0;
     bool aimed = false;
     CasterTally tally(scene);

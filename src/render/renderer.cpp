@@ -13,6 +13,9 @@ namespace pellucid {
 
 namespace {
 
+/// How much longer an iteration takes, about, whose samples have been shared out anew: they go where paths are long.
+constexpr double kLongerRenewed = 1.3;
+
 [[nodiscard]] bool asksFor(const RenderRequest& request, std::string_view layer) {
     return std::find(request.layers.begin(), request.layers.end(), layer) != request.layers.end();
 }
@@ -104,7 +107,7 @@ Pace Renderer::pace() const {
     pace.rays =
         pace.raysOnce + caustics_.stage().rays + others_.stage().rays + lights_.stage().rays + eyes_.stage().rays;
     pace.seconds = clock_.elapsed();
-    pace.secondsOfIteration = secondsOfIteration_;
+    pace.secondsOfIteration = secondsOfIteration_ * (eyes_.renewsShares(film_.samples()) ? kLongerRenewed : 1.0);
     return pace;
 }
 
