@@ -53,16 +53,18 @@ struct Extent {
 
 std::optional<std::string> causticsLeftToEyePaths(const Scene& scene) {
     const SceneDescription& d = scene.description();
-    const std::vector<Extent> of = extents(scene);
+    std::vector<bool> used(d.materials.size(), false);
+    for (const Geometry& g : d.geometries) used[d.meshes[g.mesh].material] = true;
     std::vector<std::size_t> casters;
     float smoothest = 1.0F;
     for (std::uint32_t m = 0; m < d.materials.size(); ++m) {
-        if (!(of[m].area > 0.0) || (scene.surfaces().possibleKinds(m) & kSpecular) == kNoLobe) continue;
+        if (!used[m] || (scene.surfaces().possibleKinds(m) & kSpecular) == kNoLobe) continue;
         if (!isRoughMetal(d.materials[m])) return std::nullopt;
         casters.push_back(m);
         smoothest = std::min(smoothest, d.materials[m].roughness);
     }
     if (casters.empty()) return std::nullopt;
+    const std::vector<Extent> of = extents(scene);
     double largest = 0.0;
     const CasterTally tally(scene);
     for (const TalliedLamp& lamp : tally.lamps()) {
@@ -73,8 +75,7 @@ std::optional<std::string> causticsLeftToEyePaths(const Scene& scene) {
     if (largest > kLargeLamp) return std::nullopt;
     return fmt::format(
         "all that casts is metal of roughness {:.2g} or more (limit {:.2g}), and no lamp is larger than {:.2g} sr "
-        "(limit "
-        "{:.2g}) from there: next-event estimation at the metal shows it sharper",
+        "(limit {:.2g}) from there: next-event estimation at the metal shows it sharper",
         smoothest, kLeastRoughness, largest, kLargeLamp);
 }
 

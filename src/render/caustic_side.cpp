@@ -23,7 +23,7 @@ constexpr std::uint32_t kCorrectRadiiAfter = 8;
 
 }  // namespace
 
-CausticSide::CausticSide(const PreparedView& view) : view_(view), use_(view.scene) {
+CausticSide::CausticSide(const PreparedView& view) : view_(view) {
     if (view.plan.causticMap && view.plan.adaptiveRadius)
         radii_ = std::make_unique<KernelRadii>(view.camera.width(), view.camera.height(),
                                                radiusOptions(view.request.settings));
@@ -35,15 +35,16 @@ CausticSide::CausticSide(const PreparedView& view) : view_(view), use_(view.scen
 void CausticSide::pass(PhotonSource& source, const Film& film, std::uint32_t iteration) {
     const StageTimer timer(stage_);
     watching_ = iteration == 0;
+    if (watching_) use_.emplace(view_.scene);
     const PhotonPassKey key{view_.request.seed, kCausticPass + iteration, source.paths(),
                             watching_ ? CausticUse::kWatchedPaths : 0};
     CausticPass pass = traceCausticPhotons(view_.scene, source.guide(), key, &view_.survey.visible, view_.workers,
-                                           watching_ ? &use_.tally() : nullptr);
+                                           watching_ ? &use_->tally() : nullptr);
     addPhotonPass(stage_, pass);
     stage_.photonsStored += pass.photons.size();
     map_ = std::make_unique<CausticMap>(std::move(pass.photons), photonKernel(view_.request.settings.kernel),
                                         &view_.workers);
-    if (watching_) use_.stored(std::move(pass.origins)), map_->watchUse();
+    if (watching_) use_->stored(std::move(pass.origins)), map_->watchUse();
     shrinkKernels(iteration);
     if (radii_) fitRadii(film, iteration);
     if (!source.learnsFrom(iteration)) return;
@@ -52,7 +53,7 @@ void CausticSide::pass(PhotonSource& source, const Film& film, std::uint32_t ite
 }
 
 void CausticSide::countUse() {
-    if (std::exchange(watching_, false)) use_.count(*map_);
+    if (std::exchange(watching_, false)) use_->count(*map_);
 }
 
 /// r^2_{i+1} = r^2_i (i + alpha) / (i + 1) [KnausZwicker2011]

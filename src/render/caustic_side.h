@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <pellucid/render/film.h>
@@ -43,7 +44,9 @@ public:
     /// After the eye pass of an iteration.
     void countUse();
     /// How many photons of the first iteration were used, pair by pair of lamp and caster.
-    void tellUse(std::vector<CausticLink>& links) const { use_.tell(links); }
+    void tellUse(std::vector<CausticLink>& links) const {
+        if (use_) use_->tell(links);
+    }
 
     /// Of the last pass.
     [[nodiscard]] PhotonList photons() const { return map_ ? map_->photons() : PhotonList(); }
@@ -63,7 +66,7 @@ private:
     std::unique_ptr<KernelRadii> radii_;        ///< none: one radius for all pixels
     std::unique_ptr<ProgressiveRadii> shrink_;  ///< none: all pixels alike, by radiusScale_
     std::unique_ptr<CausticMap> map_;
-    CausticUse use_;
+    std::optional<CausticUse> use_;                     ///< from the first pass on
     bool watching_ = false;                             ///< in this iteration
     double radiusScale_ = 1.0;                          ///< squared
     std::uint64_t raysBefore_ = 0, emittedBefore_ = 0;  ///< before a break

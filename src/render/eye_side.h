@@ -30,9 +30,10 @@ class EyeSide {
 public:
     explicit EyeSide(const PreparedView& view) noexcept : view_(view) {}
 
-    /// After iterations 2, 4, 8, ...: samples go where the noise is. Returns how many times more photon paths would serve
-    /// best; empty: their number stays.
+    /// Whether the samples are shared out anew after so many iterations: after 2, 4, 8, ...
     [[nodiscard]] bool renewsShares(std::uint32_t samples) const noexcept;
+    /// Then samples go where the noise is. Returns how many times more photon paths would serve best; empty: their number
+    /// stays.
     [[nodiscard]] std::optional<double> renewShares(Film& film, const CausticSide& caustics, std::uint32_t iteration);
 
     /// The samples of one iteration, all that `film` has as shares. Returns the rays, of the whole image.

@@ -11,6 +11,9 @@ constexpr double kDefaultError = 0.05;
 /// Kept of a budget for the files, about.
 constexpr double kSecondsToWritePixel = 9e-7;
 
+/// Of an iteration: with less time left no other is begun, so that budgets are missed by half of one at most, about.
+constexpr double kLeastLeft = 0.55;
+
 [[nodiscard]] bool onlyError(const Budget& b) noexcept { return !b.samples && !b.seconds && !b.rays; }
 
 }  // namespace
@@ -35,7 +38,7 @@ bool Pace::finished() const {
     if (budget.samples && samplesPerPixel >= *budget.samples) return true;
     if (iterations == 0) return false;
     const double writing = kSecondsToWritePixel * static_cast<double>(film.pixels());
-    if (budget.seconds && seconds + 0.55 * secondsOfIteration + writing >= *budget.seconds) return true;
+    if (budget.seconds && seconds + kLeastLeft * secondsOfIteration + writing >= *budget.seconds) return true;
     if (budget.rays && rays + (rays - raysOnce) / (2 * iterations) >= *budget.rays) return true;
     const bool errorGiven = budget.error || onlyError(budget);
     if (errorGiven && film.samples() >= 4 && film.relativeError() <= budget.error.value_or(kDefaultError)) return true;

@@ -92,8 +92,7 @@ constexpr auto kParameters = std::to_array<Parameter>({
      {0.4, 1}},
     {"photon.shrink", &Settings::shrink, 0, 0, false, false, "alpha|chi2", "",
      "what makes a kernel smaller. alpha: photon.alpha, by iterations (photon) or by the photons that the pixel has "
-     "met "
-     "(sppm); chi2: a test that tells the photons in it from even light",
+     "met (sppm); chi2: a test that tells the photons in it from even light",
      ParameterPass::CausticMap},
     {"photon.kernel", &Settings::kernel, 0, 0, false, false, "epanechnikov|uniform|cone|biweight", "",
      "how the caustic kernel weighs photons by distance; each is 1 over its disc", ParameterPass::CausticMap},

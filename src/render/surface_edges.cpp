@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include <pellucid/transport/photon_kernel.h>
+
 namespace pellucid {
 
 namespace {
 
-/// As for photons of the same surface: src/transport/caustic_map.cpp.
-constexpr float kMinNormalCosine = 0.5F, kMaxPlaneDistance = 0.3F;
 constexpr std::array<std::array<float, 2>, 8> kAround{{{1, 0},
                                                        {0.7071F, 0.7071F},
                                                        {0, 1},
@@ -29,14 +29,14 @@ bool nearEdge(const std::vector<GatherPoint>& points, int width, int x, int y, f
     };
     const GatherPoint& here = at(x, y);
     if (!here.valid) return true;
-    const float bound = kMaxPlaneDistance * footprints * here.footprint;
+    const float bound = kMostPlaneDistance * footprints * here.footprint;
     for (const float share : {1.0F, 0.5F})
         for (const auto& way : kAround) {
             const int px = x + static_cast<int>(std::lround(way[0] * share * footprints)),
                       py = y + static_cast<int>(std::lround(way[1] * share * footprints));
             if (px < 0 || py < 0 || px >= width || py >= height) continue;
             const GatherPoint& there = at(px, py);
-            if (!there.valid || glm::dot(there.geometricNormal, here.geometricNormal) < kMinNormalCosine ||
+            if (!there.valid || glm::dot(there.geometricNormal, here.geometricNormal) < kLeastNormalCosine ||
                 std::fabs(glm::dot(there.position - here.position, here.geometricNormal)) > bound)
                 return true;
         }

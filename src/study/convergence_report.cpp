@@ -9,6 +9,8 @@
 #include <pellucid/study/convergence.h>
 #include <pellucid/study/text_table.h>
 
+#include "log_axis.h"
+
 namespace pellucid {
 
 namespace {
@@ -19,25 +21,12 @@ constexpr std::array kColours{"#0b78c2", "#0b78c2", "#d1591a", "#d1591a", "#777"
 constexpr std::array kDashes{"none", "6 3", "none", "6 3", "2 3"};
 constexpr double kLeft = 58.0, kTop = 20.0, kWidth = 380.0, kHeight = 300.0, kLegend = 220.0;
 
-/// A logarithmic axis on the drawing.
-struct Axis {
-    double low, high, from, to;
-    [[nodiscard]] double at(double value) const {
-        return from + (to - from) * (std::log10(value) - low) / (high - low);
-    }
-};
-
-[[nodiscard]] Axis axisOver(double least, double most, double from, double to) {
-    const double low = std::floor(std::log10(least)), high = std::ceil(std::log10(most));
-    return {low, std::max(high, low + 1.0), from, to};
-}
-
 [[nodiscard]] std::string slopeText(const Interval& slope) {
     return std::isnan(slope.low) ? fmt::format("{:.2f}", slope.value)
                                  : fmt::format("{:.2f} ({:.2f} to {:.2f})", slope.value, slope.low, slope.high);
 }
 
-void drawGrid(std::string& svg, const Axis& x, const Axis& y) {
+void drawGrid(std::string& svg, const LogAxis& x, const LogAxis& y) {
     for (double e = x.low; e <= x.high; ++e) {
         const double at = x.at(std::pow(10.0, e));
         svg += fmt::format("<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\"/>", at,
@@ -86,8 +75,8 @@ std::string convergenceSvg(const std::vector<ConvergenceCurve>& curves) {
     for (const ConvergenceCurve& c : curves)
         for (const double e : c.relmse) least = std::min(least, e), most = std::max(most, e);
     const std::vector<double>& photons = curves.front().photons;
-    const Axis x = axisOver(photons.front(), photons.back(), kLeft, kLeft + kWidth),
-               y = axisOver(least, most, kTop + kHeight, kTop);
+    const LogAxis x = axisOver(photons.front(), photons.back(), kLeft, kLeft + kWidth),
+                  y = axisOver(least, most, kTop + kHeight, kTop);
     std::string svg = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"relMSE over "
         "photon paths a pixel; the table beside it holds the values\">\n<style>text{{font:11px "

@@ -8,6 +8,8 @@
 #include <pellucid/study/stiffness.h>
 #include <pellucid/study/text_table.h>
 
+#include "log_axis.h"
+
 namespace pellucid {
 
 namespace {
@@ -19,18 +21,6 @@ using Json = nlohmann::ordered_json;
     return fmt::format("{:+.2g} ± {:.1g} %", 100.0 * f.bias, 100.0 * f.interval);
 }
 
-/// A logarithmic axis on the drawing.
-struct Axis {
-    double low, high, from, to;
-    [[nodiscard]] double at(double value) const {
-        return from + (to - from) * (std::log10(value) - low) / (high - low);
-    }
-};
-[[nodiscard]] Axis axisOver(double least, double most, double from, double to) {
-    double low = std::floor(std::log10(least)), high = std::ceil(std::log10(most));
-    if (high <= low) high = low + 1.0;
-    return {low, high, from, to};
-}
 [[nodiscard]] std::string powerOfTen(double exponent, bool asPercent) {
     const double value = std::pow(10.0, exponent + (asPercent ? 2.0 : 0.0));
     const std::string text =
@@ -55,8 +45,8 @@ void drawChart(std::string& svg, const Sweep& sweep, const Chart& chart, bool va
         for (const SweepFigures& f : s.by)
             low = std::min(low, std::max(chart.value(f), 1e-6)), high = std::max(high, chart.value(f));
     }
-    const Axis x = axisOver(least, most, chart.left, chart.left + chart.width);
-    const Axis y = axisOver(low, std::max(high, low), chart.top + chart.height, chart.top);
+    const LogAxis x = axisOver(least, most, chart.left, chart.left + chart.width);
+    const LogAxis y = axisOver(low, std::max(high, low), chart.top + chart.height, chart.top);
     const double xStep = std::max(1.0, std::ceil((x.high - x.low) / 6.0)),
                  yStep = std::max(1.0, std::ceil((y.high - y.low) / 4.0));
     for (double e = y.low; e <= y.high + 0.5; e += yStep) {

@@ -12,10 +12,6 @@ namespace pellucid {
 
 namespace {
 
-/// A photon belongs to the surface of the query when the normals agree and it lies near the tangent plane.
-constexpr float kMinNormalCosine = 0.5F;
-constexpr float kMaxPlaneDistance = 0.3F;  ///< of the radius
-
 /// Photons as the search touches them: positions under the tree, the rest beside it.
 struct Photons {
     std::vector<PointSite> sites;
@@ -50,9 +46,9 @@ struct Photons {
                                float radius2) noexcept {
     const glm::vec3 n = photonNormal.direction();
     const float along = glm::dot(n, normal);
-    if (along <= 0.0F || along * along < kMinNormalCosine * kMinNormalCosine * glm::dot(n, n)) return false;
+    if (along <= 0.0F || along * along < kLeastNormalCosine * kLeastNormalCosine * glm::dot(n, n)) return false;
     const float height = glm::dot(offset, normal);
-    return height * height <= kMaxPlaneDistance * kMaxPlaneDistance * radius2;
+    return height * height <= kMostPlaneDistance * kMostPlaneDistance * radius2;
 }
 
 /// A result set that is never full, so that every photon within the radius is seen.
@@ -159,18 +155,7 @@ PhotonEstimate CausticMap::sum(const PhotonLookup& at) const noexcept {
 }
 
 PhotonEstimate CausticMap::estimate(const PhotonLookup& at) const noexcept {
-    using namespace kernel_shape;
-    switch (impl_->kernel) {
-        case PhotonKernel::Uniform:
-            return sum<Uniform>(at);
-        case PhotonKernel::Cone:
-            return sum<Cone>(at);
-        case PhotonKernel::Biweight:
-            return sum<Biweight>(at);
-        case PhotonKernel::Epanechnikov:
-            break;
-    }
-    return sum<Epanechnikov>(at);
+    return withShape(impl_->kernel, [&](auto shape) { return sum<decltype(shape)>(at); });
 }
 
 FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept {

@@ -12,44 +12,29 @@ namespace {
 
 constexpr int kPlaces = 16;
 constexpr float kGoldenTurn = 0.38196601F;  ///< of places on a sunflower
-/// As high above its plane a photon still belongs to the surface, in radii; and as far its normal may lean. (caustic_map.cpp)
-constexpr float kHeight = 0.3F, kMinNormalCosine = 0.5F;
 constexpr float kLeastMass = 0.1F;
-
-[[nodiscard]] float shapeOf(PhotonKernel kernel, float t) noexcept {
-    using namespace kernel_shape;
-    switch (kernel) {
-        case PhotonKernel::Uniform:
-            return Uniform::shape(t);
-        case PhotonKernel::Cone:
-            return Cone::shape(t);
-        case PhotonKernel::Biweight:
-            return Biweight::shape(t);
-        case PhotonKernel::Epanechnikov:
-            break;
-    }
-    return Epanechnikov::shape(t);
-}
 
 }  // namespace
 
 float kernelMass(const Scene& scene, const glm::vec3& point, const glm::vec3& normal, float radius, PhotonKernel kernel,
                  float turn, std::uint64_t& rays) noexcept {
     const Frame frame(normal);
-    const glm::vec3 above = normal * (kHeight * radius), start = offsetOrigin(point, normal) + above;
+    const glm::vec3 above = normal * (kMostPlaneDistance * radius), start = offsetOrigin(point, normal) + above;
     float whole = 0.0F, there = 0.0F;
     for (int i = 0; i < kPlaces; ++i) {
         const float t = (static_cast<float>(i) + 0.5F) / kPlaces, distance = radius * std::sqrt(t),
-                    phi = kTwoPi * (turn + kGoldenTurn * static_cast<float>(i)), weight = shapeOf(kernel, t);
+                    phi = kTwoPi * (turn + kGoldenTurn * static_cast<float>(i)),
+                    weight = withShape(kernel, [t](auto shape) { return shape.shape(t); });
         const glm::vec3 along = frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi);
         whole += weight;
         ++rays;
         if (scene.intersect(Ray{start, along, distance}, 0.0F)) continue;
         ++rays;
-        const auto hit = scene.intersect(Ray{start + along * distance, -normal, 2.0F * kHeight * radius}, 0.0F);
+        const auto hit =
+            scene.intersect(Ray{start + along * distance, -normal, 2.0F * kMostPlaneDistance * radius}, 0.0F);
         if (!hit) continue;
         const Bsdf bsdf = scene.surfaces().bsdf(hit->point, normal);
-        if (glm::dot(bsdf.geometricNormal(), normal) >= kMinNormalCosine) there += weight;
+        if (glm::dot(bsdf.geometricNormal(), normal) >= kLeastNormalCosine) there += weight;
     }
     return std::max(kLeastMass, there / whole);
 }

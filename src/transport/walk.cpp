@@ -29,6 +29,7 @@ enum VertexDimension : std::uint64_t {
     kRoulette,
     kCorner
 };
+
 /// The kind of lobe that made a direction, and what that makes of the throughput. No kind: nothing came this way.
 struct Onward {
     LobeKinds kind = kNoLobe;

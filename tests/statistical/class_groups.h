@@ -2,7 +2,9 @@
 /// E p D S+ L and all the rest behind E p D, of which the photon method's cache does not know more.
 #pragma once
 
+#include <iostream>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -72,6 +74,17 @@ inline std::vector<GroupDifference> compareGroups(const std::vector<Image>& refe
 inline double photonAllowance(const std::string& group) {
     if (group.ends_with("..L")) return 0.05;
     return group.ends_with("DSL") ? 0.03 : 0.0;
+}
+
+/// Every class of `measured` has the energy that it has in `reference`. `name`: of the scene.
+inline void expectSameEnergy(const std::string& name, const std::vector<Image>& reference,
+                             const std::vector<Image>& measured) {
+    for (const GroupDifference& d : compareGroups(reference, measured, photonAllowance, 0.004)) {
+        std::ostringstream text;
+        text << name << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
+        std::cout << text.str() << "\n";
+        EXPECT_TRUE(d.holds()) << text.str();
+    }
 }
 
 }  // namespace pellucid::testing

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../support/same_bits.h"
 #include "agreement.h"
 #include "class_groups.h"
 #include "small_scenes.h"
@@ -15,15 +16,10 @@ namespace pellucid {
 namespace {
 
 using namespace testing;
+using test::expectSameBits;
 
 [[nodiscard]] Scene made(const SmallScene& s, const Workers& workers) {
     return Scene(s.scene, s.environment, SceneOptions{}, workers);
-}
-
-/// Nothing where lamps are sampled; the bias of kernels that had few iterations to shrink else.
-double allowance(const std::string& group) {
-    if (group.ends_with("..L")) return 0.05;
-    return group.ends_with("DSL") ? 0.03 : 0.0;
 }
 
 class Sppm : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
@@ -40,13 +36,7 @@ TEST_P(Sppm, EveryClassHasItsEnergy) {
         sppm.samples = 32;
         sppm.firstSeed = 700;
         setParameter(sppm.settings, GetParam().first, GetParam().second);
-        for (const GroupDifference& d : compareGroups(renderSeeds(scene, reference, workers),
-                                                      renderSeeds(scene, sppm, workers), allowance, 0.004)) {
-            std::cout << small.name << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- "
-                      << d.error << "\n";
-            EXPECT_TRUE(d.holds()) << small.name << ", " << d.group << ": " << d.measured << " for " << d.expected
-                                   << " +- " << d.error;
-        }
+        expectSameEnergy(small.name, renderSeeds(scene, reference, workers), renderSeeds(scene, sppm, workers));
     }
 }
 
@@ -65,12 +55,6 @@ INSTANTIATE_TEST_SUITE_P(Ways, Sppm,
     setParameter(r.settings, "photon.caustic", "3000");
     setParameter(r.settings, "cache.rays", "32");
     return r;
-}
-
-void expectSameBits(const Image& a, const Image& b) {
-    ASSERT_EQ(a.channels(), b.channels());
-    for (std::size_t i = 0; i < a.pixels(); ++i)
-        for (int c = 0; c < a.channels(); ++c) ASSERT_EQ(a.at(i, c), b.at(i, c)) << "pixel " << i << ", channel " << c;
 }
 
 /// Also of the photon method where a test shrinks its kernels.

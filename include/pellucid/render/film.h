@@ -89,8 +89,8 @@ private:
     struct Terms {
         std::uint32_t count = 0;
         double weight = 1.0;  ///< of those to come
-        double sum = 0.0, odd = 0.0,
-               squares = 0.0;  ///< of the weights so far: all, of odd iterations; of their squares
+        /// Of the weights so far: all, of odd iterations; of their squares.
+        double sum = 0.0, odd = 0.0, squares = 0.0;
 
         void add(std::uint32_t terms) noexcept {
             odd += weight * ((count + terms) / 2 - count / 2);
@@ -106,8 +106,8 @@ private:
         double half[3] = {};                 ///< of odd iterations
         double splat[kPathClasses][3] = {};
         double splatHalf[3] = {};
-        double squareSum = 0.0,
-               squareSquare = 0.0;  ///< of the luminance of an iteration's mean, by the weight's square
+        /// Of the luminance of an iteration's mean, by the weight's square.
+        double squareSum = 0.0, squareSquare = 0.0;
         /// Of the luminance without what photons gave, weighed by the number of samples.
         double eyeSum = 0.0, eyeSquare = 0.0;
         double sharedSum = 0.0, sharedSquare = 0.0;  ///< of the luminance that photons gave, unweighed

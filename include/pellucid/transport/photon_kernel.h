@@ -31,6 +31,26 @@ struct Biweight {
 
 }  // namespace kernel_shape
 
+/// Calls function(a shape of kernel_shape) with the kernel's and returns what it returns.
+template <class Function>
+[[nodiscard]] auto withShape(PhotonKernel kernel, const Function& function) noexcept {
+    switch (kernel) {
+        case PhotonKernel::Uniform:
+            return function(kernel_shape::Uniform{});
+        case PhotonKernel::Cone:
+            return function(kernel_shape::Cone{});
+        case PhotonKernel::Biweight:
+            return function(kernel_shape::Biweight{});
+        case PhotonKernel::Epanechnikov:
+            break;
+    }
+    return function(kernel_shape::Epanechnikov{});
+}
+
+/// A photon within a kernel lies on the surface of the kernel's middle when its normal leans by at most 60 degrees, and its
+/// height over the tangent plane is at most this share of the radius.
+inline constexpr float kLeastNormalCosine = 0.5F, kMostPlaneDistance = 0.3F;
+
 /// Photons that a kernel needs for the noise of Epanechnikov's at the same balance of noise and bias: the square of the ratio of
 /// the radii that are optimal for each, r^6 ~ R / m^2 with R = int K^2 and m the second moment: (R, m) of the unit disc are
 /// (4/3 pi, 1/6), (1/pi, 1/4), (3/2 pi, 3/20), (9/5 pi, 1/8). [Silverman1986, sec. 4.2]

@@ -156,14 +156,14 @@ private:
 
     void write(const State& state, const SurfaceHit* hit, const Bsdf* bsdf) const;
 
-    const TransportContext& context_;
-    bool holes_;
-    LampChains lampChains_;
     void addOthers(State& state, const Vertex& vertex, const Rgb& outgoing, float turn) noexcept;
     /// The part of a kernel that lies on the surface, where `edge` says that it may leave it.
     [[nodiscard]] float massOf(bool edge, const CausticMap& map, const PhotonEstimate& found, const Vertex& vertex,
                                float radius, float turn) noexcept;
 
+    const TransportContext& context_;
+    bool holes_;
+    LampChains lampChains_;
     WalkTrace* trace_ = nullptr;
     PhotonTally* tally_ = nullptr;
     std::uint64_t rays_ = 0, cacheMisses_ = 0;
