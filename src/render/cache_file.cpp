@@ -15,9 +15,10 @@ namespace {
 constexpr SealedKind kCacheFile{"pellucid cache 3\n", "the cache file", "delete it, or name another: it is made anew"};
 
 /// What a view may have for itself.
-constexpr std::array<std::string_view, 12> kOfTheView{
-    "photon.caustic",  "photon.radius",   "photon.alpha", "photon.guiding", "path.adaptive", "path.sampler",
-    "reference.texel", "camera.aperture", "camera.focus", "cache.mode",     "photon.chance", "photon.caustic_map"};
+constexpr std::array<std::string_view, 13> kOfTheView{
+    "photon.caustic", "photon.radius",      "photon.alpha",       "photon.guiding", "path.adaptive",
+    "path.sampler",   "reference.texel",    "camera.aperture",    "camera.focus",   "cache.mode",
+    "photon.chance",  "photon.caustic_map", "reference.eye_paths"};
 
 /// The last two members are whole numbers.
 constexpr std::size_t kFloatsOfRecord = 35;

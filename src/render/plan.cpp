@@ -26,13 +26,20 @@ constexpr double kDefaultTimeCap = 120.0;
     return count;
 }
 
-/// What a reference adds to light tracing where caustics are.
+/// What a reference adds to light tracing where caustics are. What those light in turn (E D D S+ L) path tracing sees by the
+/// rare chance to meet a small lamp: light paths that are joined with eye paths carry it. From an environment they seldom
+/// come where they are wanted.
 void planReference(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen) {
     const std::size_t delta = pointLikeLights(scene.lights());
-    plan.bidirectional = delta > 0;
+    const std::string& asked = request.settings.referencePaths;
+    const bool sky = scene.environment() != nullptr;
+    plan.bidirectional = asked == "bdpt" || (asked == "auto" && (delta > 0 || !sky));
     decide(plan, "eye paths", plan.bidirectional ? "bidirectional" : "path tracing",
-           fmt::format("{} point-like light{}{}", delta, delta == 1 ? "" : "s",
-                       delta > 0 ? ": path tracing sees nothing that their caustics light" : ""));
+           delta > 0 ? fmt::format("{} point-like light{}: path tracing sees nothing that their caustics light", delta,
+                                   delta == 1 ? "" : "s")
+           : sky     ? "an environment shines: few paths from it come to where they are wanted"
+                     : "what caustics light in turn path tracing meets by rare chance",
+           asked != "auto");
     if (seen.receivers == 0) return;
     plan.texelWidth = static_cast<float>(request.settings.texelWidth) * seen.medianFootprint;
     decide(plan, "texel irradiance", plan.texelWidth > 0.0F ? "on" : "off",
@@ -45,9 +52,8 @@ void planReference(Plan& plan, const Scene& scene, const RenderRequest& request,
 /// How the eye's samples are spread. The baselines stay plain unless told otherwise.
 void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) {
     const Settings& s = request.settings;
-    const bool traces = request.method != Method::Light && request.method != Method::Bdpt && !plan.bidirectional;
-    if (!traces) return;
-    const bool plain = request.method == Method::Path;
+    if (request.method == Method::Light) return;
+    const bool plain = request.method == Method::Path || request.method == Method::Bdpt;
     bool glass = false, seenLamps = scene.environment() != nullptr;
     for (const Material& m : scene.surfaces().materials()) glass = glass || m.transmission > 0.0F;
     for (std::uint32_t l = 0; l < scene.lights().count(); ++l)
@@ -56,6 +62,7 @@ void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) 
     if (glass && seenLamps && !(plain && !isOn(s.split)))
         decide(plan, "lamps through glass", plan.splitLampChains ? "both ways" : "by chance",
                "the scene has glass, and lamps that can be seen", s.split != "auto");
+    if (request.method == Method::Bdpt || plan.bidirectional) return;
     const bool progressive = request.method == Method::Sppm;  // each pixel counts its photons once an iteration
     plan.adaptive = !progressive && (isOn(s.adaptive) || (!plain && !isOff(s.adaptive) && !request.budget.samples));
     if (progressive) {
@@ -79,6 +86,9 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
         fmt::format("{} point-like light{} and surfaces that cast caustics: ", delta, delta == 1 ? "" : "s");
     if (request.method == Method::Path)
         plan.blindSpots.push_back(which + "path tracing sees none of their caustics (E .. D S+ L)");
+    if (request.method == Method::Reference && !plan.bidirectional)
+        plan.blindSpots.push_back(which +
+                                  "reference.eye_paths=path sees nothing that their caustics light (E .. D D S+ L)");
     if (request.method == Method::Reference)
         plan.blindSpots.push_back(
             which + (plan.texelWidth > 0.0F

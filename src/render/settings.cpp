@@ -32,7 +32,8 @@ constexpr auto kParameters = std::to_array<Parameter>({
      "lamps seen through smooth glass: reflection and refraction are both followed; auto: not by path and bdpt, the "
      "plain baselines"},
     {"path.adaptive", &Settings::adaptive, 0, 0, true, false, "auto|on|off", "",
-     "more samples for noisier pixels; auto: by photon and reference, unless --spp counts them"},
+     "more samples for noisier pixels; auto: by photon and by reference where it path traces, unless --spp counts "
+     "them"},
     {"surface.cast_roughness",
      &Settings::castRoughness,
      0,
@@ -111,7 +112,11 @@ constexpr auto kParameters = std::to_array<Parameter>({
      "rough casters",
      ParameterPass::CausticMap},
     {"reference.texel", &Settings::texelWidth, 0, 1000, false, true, "", "pixels",
-     "width of the texels by which --method reference shows caustics in mirrors and through glass; 0: path tracing"},
+     "width of the texels by which --method reference shows caustics in mirrors and through glass; 0: by eye paths"},
+    {"reference.eye_paths", &Settings::referencePaths, 0, 0, false, false, "auto|path|bdpt", "",
+     "what carries every other class of --method reference: path tracing or bidirectional paths; auto: path tracing "
+     "where "
+     "an environment shines and nothing point-like does"},
     {"cache.mode", &Settings::cache, 0, 0, true, false, "auto|on|off", "",
      "indirect diffuse light by irradiance cache, or traced at every pixel"},
     {"cache.metric", &Settings::cacheMetric, 0, 0, false, false, "ward|tabellion|hessian", "",

@@ -28,7 +28,9 @@ Bidirectional::Bidirectional(const Scene& scene, const Camera& camera, const Tra
       left_(options.left),
       rules_{options.powerHeuristic, options.rouletteThreshold, options.maxDepth, lightPaths},
       eye_(scene, rules_, Subpath::From::Eye),
-      light_(scene, rules_, Subpath::From::Light) {}
+      light_(scene, rules_, Subpath::From::Light),
+      splitLampChains_(options.splitLampChains),
+      lampChains_(scene, options.maxDepth) {}
 
 LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sampler& light,
                                       std::vector<LightSplat>& splats, FirstHit* first, StringSums* strings) noexcept {
@@ -36,22 +38,31 @@ LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sample
     sum.strings = strings;
     traceLight(light, splats);
     eye_.startAtEye(camera_, cameraRay);
+    bool lampsFollowed = false;  // over delta lobes, by LampChains
+    const auto countsLamps = [&] { return !left_.has(eye_.string()) && !(lampsFollowed && eye_.deltaChain()); };
     for (;;) {
         const std::uint64_t dimension = kEyeDimensions + kDimensionsPerVertex * eye_.vertices().size();
         eye.setDimension(dimension + kCoin);
         ++rays_;
         if (!eye_.advance(eye.next1D())) {
-            if (!left_.has(eye_.string())) sum.add(eye_.string(), eye_.escaped());
+            if (countsLamps()) sum.add(eye_.string(), eye_.escaped());
             return sum;
         }
         const PathVertex& z = eye_.last();
         if (first != nullptr && eye_.vertices().size() == 1)
             *first = {z.bsdf.diffuse().reflectance, z.bsdf.shadingNormal(), z.hit.distance, 0.0F};
-        if (!left_.has(eye_.string())) sum.add(eye_.string(), eye_.emitted());
+        if (countsLamps()) sum.add(eye_.string(), eye_.emitted());
+        const std::size_t depth = eye_.vertices().size(), limit = static_cast<std::size_t>(rules_.maxDepth);
+        if (splitLampChains_ && eye_.deltaChain() && !lampsFollowed && (limit == 0 || depth <= limit)) {
+            EyeLedger ledger;
+            if (depth > 1) ledger.pass(kSpecular);
+            lampsFollowed = lampChains_.follow({z.hit, z.bsdf, z.toPrevious, z.throughput, z.absorption,
+                                                eye_.etaScale(), ledger, static_cast<int>(depth)},
+                                               eye, sum);
+        }
         eye.setDimension(dimension + kConnectChoice);
         const float choose = eye.next1D();
         const glm::vec2 point = eye.next2D();
-        const std::size_t depth = eye_.vertices().size(), limit = static_cast<std::size_t>(rules_.maxDepth);
         if (z.bsdf.connects() && (limit == 0 || depth <= limit)) {
             addDirect(z, choose, point, sum);
             for (std::size_t i = 0; i < light_.vertices().size(); ++i)

@@ -36,6 +36,7 @@ void Subpath::begin(const Ray& ray, const Rgb& throughput) noexcept {
     absorption_ = Rgb(0.0F);
     etaScale_ = 1.0F;
     mis_ = {};
+    deltaChain_ = true;
     string_ = PathString();
 }
 
@@ -199,6 +200,7 @@ bool Subpath::scatter(Sampler& sampler) noexcept {
     if (!(cosOut > kLeastCosine)) return false;
     const bool goesOn = sample->delta ? deltaStep(v, *sample, scene_.surfaces().bsdf(v.hit.point, sample->wi), cosOut)
                                       : glossyStep(v, *sample, cosOut, choose);
+    deltaChain_ = deltaChain_ && sample->delta;
     if (!goesOn || !survives(before, sample->etaScale, roulette)) return false;
     if (from_ == From::Eye) string_.pass(v.passed);
     absorption_ = medium::afterHit(scene_, v.hit.point, v.bsdf, absorption_, sample->transmitted);

@@ -40,7 +40,8 @@ struct Settings {
     std::string causticMap = "auto";      ///< photon.caustic_map: auto | on | off
     std::string chance = "off";           ///< photon.chance: on | off
     // reference
-    double texelWidth = 1.0;  ///< reference.texel: in pixel footprints; 0: off
+    double texelWidth = 1.0;              ///< reference.texel: in pixel footprints; 0: off
+    std::string referencePaths = "auto";  ///< reference.eye_paths: auto | path | bdpt
     // irradiance cache and gather
     std::string cache = "auto";           ///< cache.mode: auto | on | off
     std::string cacheMetric = "hessian";  ///< cache.metric: ward | tabellion | hessian

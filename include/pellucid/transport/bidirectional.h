@@ -24,7 +24,7 @@ public:
                                          std::vector<LightSplat>& splats, FirstHit* first = nullptr,
                                          StringSums* strings = nullptr) noexcept;
 
-    [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
+    [[nodiscard]] std::uint64_t rays() const noexcept { return rays_ + lampChains_.rays(); }
     /// The two paths of the last sample.
     [[nodiscard]] const Subpath& eyePath() const noexcept { return eye_; }
     [[nodiscard]] const Subpath& lightPath() const noexcept { return light_; }
@@ -43,6 +43,8 @@ private:
     LeftClasses left_;
     SubpathRules rules_;
     Subpath eye_, light_;
+    bool splitLampChains_;
+    LampChains lampChains_;
     std::uint64_t rays_ = 0;
 };
 

@@ -83,6 +83,9 @@ public:
     /// Eye paths: radiance that the last vertex emits, or the environment after advance() said false, with its weight.
     [[nodiscard]] Rgb emitted() const noexcept;
     [[nodiscard]] Rgb escaped() const noexcept;
+    /// Whether it has gone over delta lobes alone.
+    [[nodiscard]] bool deltaChain() const noexcept { return deltaChain_; }
+    [[nodiscard]] float etaScale() const noexcept { return etaScale_; }
     /// The string of the eye path behind its last scattering.
     [[nodiscard]] PathString string() const noexcept { return string_; }
 
@@ -110,7 +113,7 @@ private:
     Ray ray_;
     Rgb throughput_{1.0F}, absorption_{0.0F};
     float etaScale_ = 1.0F;
-    bool escaped_ = false;
+    bool escaped_ = false, deltaChain_ = true;
     MisSums mis_;  ///< of the next vertex, before the factors of its distance and cosine
     PathString string_;
 };
