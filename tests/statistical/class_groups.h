@@ -76,14 +76,16 @@ inline double photonAllowance(const std::string& group) {
     return group.ends_with("DSL") ? 0.03 : 0.0;
 }
 
-/// Every class of `measured` has the energy that it has in `reference`. `name`: of the scene.
+/// Every class of `measured` has the energy that it has in `reference`. `name`: of the scene. `blind`: the reference lacks
+/// E S+ D S+ D S+ L, as it says of point-like lights, and is a lower bound of the group where that is.
 inline void expectSameEnergy(const std::string& name, const std::vector<Image>& reference,
-                             const std::vector<Image>& measured) {
+                             const std::vector<Image>& measured, bool blind = false) {
     for (const GroupDifference& d : compareGroups(reference, measured, photonAllowance, 0.004)) {
         std::ostringstream text;
         text << name << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
         std::cout << text.str() << "\n";
-        EXPECT_TRUE(d.holds()) << text.str();
+        const bool lacks = blind && d.group == "ESD..L" && d.measured > d.expected;
+        EXPECT_TRUE(d.holds() || lacks) << text.str();
     }
 }
 
