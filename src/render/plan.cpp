@@ -17,15 +17,6 @@ namespace {
 constexpr float kSpacingOfImage = 0.1F;  ///< of its shorter side: the largest radius of a record
 constexpr double kDefaultTimeCap = 120.0;
 
-[[nodiscard]] std::size_t pointLikeLights(const Lights& lights) {
-    std::size_t count = 0;
-    for (std::uint32_t l = 0; l < lights.count(); ++l) {
-        const LightKind k = lights.kind(l);
-        if (k == LightKind::Point || k == LightKind::Spot || k == LightKind::Directional) ++count;
-    }
-    return count;
-}
-
 /// What a reference adds to light tracing where caustics are. What those light in turn (E D D S+ L) path tracing sees by the
 /// rare chance to meet a small lamp: light paths that are joined with eye paths carry it. From an environment they seldom
 /// come where they are wanted.
@@ -33,12 +24,14 @@ void planReference(Plan& plan, const Scene& scene, const RenderRequest& request,
     const std::size_t delta = pointLikeLights(scene.lights());
     const std::string& asked = request.settings.referencePaths;
     const bool sky = scene.environment() != nullptr;
-    plan.bidirectional = asked == "bdpt" || (asked == "auto" && (delta > 0 || !sky));
+    const bool seesNone = seen.receivers == 0;
+    plan.bidirectional = asked == "bdpt" || (asked == "auto" && (delta > 0 || (!sky && !seesNone)));
     decide(plan, "eye paths", plan.bidirectional ? "bidirectional" : "path tracing",
-           delta > 0 ? fmt::format("{} point-like light{}: path tracing sees nothing that their caustics light", delta,
+           delta > 0  ? fmt::format("{} point-like light{}: path tracing sees nothing that their caustics light", delta,
                                    delta == 1 ? "" : "s")
-           : sky     ? "an environment shines: few paths from it come to where they are wanted"
-                     : "what caustics light in turn path tracing meets by rare chance",
+           : seesNone ? "the camera sees no diffuse surface"
+           : sky      ? "an environment shines: few paths from it come to where they are wanted"
+                      : "what caustics light in turn path tracing meets by rare chance",
            asked != "auto");
     if (seen.receivers == 0) return;
     plan.texelWidth = static_cast<float>(request.settings.texelWidth) * seen.medianFootprint;
@@ -106,6 +99,15 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
 
 }  // namespace
 
+std::size_t pointLikeLights(const Lights& lights) {
+    std::size_t count = 0;
+    for (std::uint32_t l = 0; l < lights.count(); ++l) {
+        const LightKind k = lights.kind(l);
+        if (k == LightKind::Point || k == LightKind::Spot || k == LightKind::Directional) ++count;
+    }
+    return count;
+}
+
 GenerationSize Plan::generation(std::uint32_t number) const noexcept {
     constexpr double kPhotonGrowth = 1.5, kErrorPower = 0.25, kMostPhotons = 1e7;
     constexpr std::uint32_t kRayDoublings = 2;
@@ -125,7 +127,7 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
     plan.alpha = static_cast<float>(request.settings.alpha);
     if (request.method == Method::Photon) {
         planCaustics(plan, scene, request, seen, workers);
-        planIndirect(plan, scene, request, seen, workers);
+        planIndirect(plan, scene, camera, request, seen, workers);
     } else if (request.method == Method::Sppm) {
         planCaustics(plan, scene, request, seen, workers);
         planOthers(plan, scene, request, seen, workers);

@@ -16,14 +16,17 @@ inline void decide(Plan& plan, std::string name, std::string choice, std::string
     plan.decisions.push_back({std::move(name), std::move(choice), std::move(reason), overridden});
 }
 
+/// Points, spots and directions: light that no path meets by chance.
+[[nodiscard]] std::size_t pointLikeLights(const Lights& lights);
+
 /// Trains emission guiding; returns how many pilot photons were useful.
 [[nodiscard]] std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request,
                                         const Survey& seen, const Workers& workers);
 void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
                   const Workers& workers);
 /// Cache and global map.
-void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
-                  const Workers& workers);
+void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const RenderRequest& request,
+                  const Survey& seen, const Workers& workers);
 /// Progressive photon mapping: what the caustic map does not hold.
 void planOthers(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
                 const Workers& workers);

@@ -9,8 +9,10 @@
 #include <pellucid/transport/photon_trace.h>
 
 #include "caustic_choice.h"
+#include "eye_pilot.h"
 #include "photon_memory.h"
 #include "plan_parts.h"
+#include "setting_choices.h"
 #include "stages.h"
 
 namespace pellucid {
@@ -33,6 +35,10 @@ constexpr std::uint32_t kGlobalPaths = 75'000;
 /// Caustic photon paths an iteration: so many that this many are useful, between two bounds.
 constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
 constexpr double kOtherPathsPerPixel = 1.0;
+/// Pixels of a pilot of eye paths. With less of their noise from indirect diffuse light look-ups cost more than they save:
+/// as measured on scenes under skies.
+constexpr std::size_t kEyePilotPixels = 2048;
+constexpr double kLeastIndirect = 0.08;
 
 [[nodiscard]] std::uint32_t withinShortBudget(double paths, const Budget& budget) {
     const double left = budget.seconds.value_or(kShortBudget) - budget.startedSecondsAgo;
@@ -45,6 +51,11 @@ constexpr double kOtherPathsPerPixel = 1.0;
     double sum = 0.0;
     for (const UsefulEmission& e : useful) sum += 1.0 / static_cast<double>(e.density);
     return sum / paths;
+}
+
+/// Whether path tracing would lose what caustics light in turn: E .. D D S+ L from lights that cannot be met.
+[[nodiscard]] bool lightsReachCastersByPhotonsAlone(const Scene& scene) {
+    return (scene.lobeKinds() & kSpecular) != kNoLobe && pointLikeLights(scene.lights()) > 0;
 }
 
 }  // namespace
@@ -139,8 +150,8 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
            isOff(s.guiding));
 }
 
-void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
-                  const Workers& workers) {
+void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const RenderRequest& request,
+                  const Survey& seen, const Workers& workers) {
     const Settings& s = request.settings;
     if (isOff(s.cache)) {
         decide(plan, "irradiance cache", "off", "asked for; indirect light is path traced", true);
@@ -150,6 +161,21 @@ void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, 
         decide(plan, "irradiance cache", "off", "the camera sees no diffuse surface");
         decide(plan, "global map", "off", "nothing gathers from it");
         return;
+    }
+    double share = 1.0;
+    if (!isOn(s.cache) && request.cacheFile.empty() && !lightsReachCastersByPhotonsAlone(scene)) {
+        const TransportContext context{scene, transportOptions(s), {}};
+        const EyePilot pilot = pilotEyePaths(context, camera, request.seed, plan.causticMap, kEyePilotPixels, workers);
+        plan.pilotRays += pilot.rays;
+        share = pilot.indirectShare;
+        if (share < kLeastIndirect) {
+            decide(
+                plan, "irradiance cache", "off",
+                fmt::format("{:.1f} % of path tracing's noise is indirect diffuse light (limit {:.0f} %): it is path "
+                            "traced",
+                            100.0 * share, 100.0 * kLeastIndirect));
+            return decide(plan, "global map", "off", "nothing gathers from it");
+        }
     }
     plan.cache = plan.globalMap = true;
     plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons)
@@ -168,8 +194,12 @@ void planIndirect(Plan& plan, const Scene& scene, const RenderRequest& request, 
     if (s.gatherRays > 0) plan.gatherRays = s.gatherRays;
     if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);
     if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
-    const double share = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
-    decide(plan, "irradiance cache", "on", fmt::format("{:.1f} % of the pixels end at a diffuse surface", share),
+    const double receivers = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
+    decide(plan, "irradiance cache", "on",
+           fmt::format("{:.1f} % of the pixels end at a diffuse surface{}", receivers,
+                       share < 1.0
+                           ? fmt::format(", {:.0f} % of path tracing's noise is indirect diffuse light", 100.0 * share)
+                           : ""),
            isOn(s.cache));
     decide(plan, "global map", plan.globalMap ? "on" : "off",
            fmt::format("{} photon paths for the first generation of records{}", plan.globalPaths,

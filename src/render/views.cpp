@@ -25,6 +25,7 @@ public:
                const Workers& workers, const Progress& progress)
         : scene_(scene), cameras_(cameras), workers_(workers), progress_(progress), frame_(request) {
         frame_.cacheFile.clear();
+        if (frame_.settings.cache == "auto") frame_.settings.cache = "on";  // many views share its cost
     }
 
     /// One plan of the caustic map for all: records leave to it what it holds.
