@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include <pellucid/base/error.h>
 
@@ -36,6 +37,9 @@ static_assert(std::is_trivially_copyable_v<IrradianceRecord> &&
            glm::length(record.position - scene.centre()) <= 4.0F * size;
 }
 
+/// As a user would ask for it.
+[[nodiscard]] std::string_view asked(std::string_view value) noexcept { return value == "-1" ? "auto" : value; }
+
 /// Why a file does not fit, in words; empty: it does.
 [[nodiscard]] std::string difference(const CacheKey& here, const CacheKey& there) {
     std::string text;
@@ -45,7 +49,11 @@ static_assert(std::is_trivially_copyable_v<IrradianceRecord> &&
         if (other != there.parts.end() && other->second == value) continue;
         if (!text.empty()) text += ", ";
         if (name == "scene") return "geometry, materials, lights or environment";
-        text += name + "=" + (other == there.parts.end() ? "?" : other->second) + " there, " + value + " here";
+        text += name + "=";
+        text += other == there.parts.end() ? "?" : asked(other->second);
+        text += " there, ";
+        text += asked(value);
+        text += " here";
     }
     if (text.empty() && here.parts.size() != there.parts.size()) text = "settings that this version does not know";
     return text;

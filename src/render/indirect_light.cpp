@@ -27,9 +27,11 @@ constexpr double kCacheShare = 0.7, kLaterCacheShare = 0.9;
 
 }  // namespace
 
+/// A number of photons that nobody asked for follows the clock and the memory, and the file holds its own.
 CacheKey fileKey(const PreparedView& view) {
-    return cacheKey(view.scene, resolvedSettings(view.request.settings, view.plan),
-                    view.plan.causticMap || view.plan.causticChains);
+    Settings settings = resolvedSettings(view.request.settings, view.plan);
+    settings.globalPhotons = view.request.settings.globalPhotons;
+    return cacheKey(view.scene, settings, view.plan.causticMap || view.plan.causticChains);
 }
 
 /// What was loaded is saved as soon as this view has added to it: a later generation would know this view alone.

@@ -183,6 +183,18 @@ TEST_F(Views, AStaleFileIsRefusedWithTheReason) {
     EXPECT_GT(reuse.recordsReused, 5 * reuse.recordsNew);
 }
 
+TEST_F(Views, AShorterTimeReadsTheFileOfALongerOne) {
+    RenderRequest request = smallRequest("camera 1", 1);
+    request.settings.globalPhotons = Settings{}.globalPhotons;
+    request.budget.seconds = 1000.0;
+    const ReuseReport first = renderWith(request, "cache").record.reuse;
+    request.budget.seconds = 2.0;  // the plan gives so short a time fewer photons
+    EXPECT_EQ(renderWith(request, "cache").record.reuse.recordsReused, first.recordsNew);
+    request.settings.globalPhotons = 20'000;  // an asked number is a setting like others
+    EXPECT_NE(refusal(scene_, request, "cache").find("photon.global=auto there, 20000 here"), std::string::npos)
+        << refusal(scene_, request, "cache");
+}
+
 TEST_F(Views, ACameraThatMovedInTheSceneFileReusesWhatIsLearnt) {
     (void)renderWith(smallRequest("camera 1", 1), "cache");
     SceneDescription moved = ballInCorner();
