@@ -44,8 +44,8 @@ static_assert(std::is_trivially_copyable_v<IrradianceRecord> &&
 [[nodiscard]] std::string difference(const CacheKey& here, const CacheKey& there) {
     std::string text;
     for (const auto& [name, value] : here.parts) {
-        const auto other =
-            std::find_if(there.parts.begin(), there.parts.end(), [&](const auto& part) { return part.first == name; });
+        const auto other = std::find_if(there.parts.begin(), there.parts.end(),
+                                        [&wanted = name](const auto& part) { return part.first == wanted; });
         if (other != there.parts.end() && other->second == value) continue;
         if (!text.empty()) text += ", ";
         if (name == "scene") return "geometry, materials, lights or environment";

@@ -14,7 +14,6 @@ namespace pellucid {
 
 namespace {
 
-constexpr float kSpacingOfImage = 0.1F;  ///< of its shorter side: the largest radius of a record
 constexpr double kDefaultTimeCap = 120.0;
 
 /// What a reference adds to light tracing where caustics are. What those light in turn (E D D S+ L) path tracing sees by the

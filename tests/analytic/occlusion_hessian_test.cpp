@@ -116,8 +116,9 @@ TEST(OcclusionHessian, OfAWallThatShinesOrHides) {
     for (const double x : {0.3, 0.8, 2.0})
         for (const auto& [rays, shines] :
              {std::pair(3'000, true), {12'000, true}, {12'000, false}, {200'000, true}, {200'000, false}}) {
-            const GatherGrid g =
-                gatherOf(rays, [&](const glm::dvec3& d) { return wallAt(x, 1.0, shines ? 1 : 0, shines ? 0 : 1, d); });
+            const GatherGrid g = gatherOf(rays, [&, light = shines](const glm::dvec3& d) {
+                return wallAt(x, 1.0, light ? 1 : 0, light ? 0 : 1, d);
+            });
             const TangentCurvature t = tangentCurvature(occlusionHessian(g, kFrame, 1e-4F, 100.0F), kFrame);
             const double expected = (shines ? 1.5 : -1.5) * kPiD * x / std::pow(x * x + 1.0, 2.5);
             const double tolerance = 11.0 / g.elevations * std::fabs(expected);
