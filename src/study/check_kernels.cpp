@@ -50,7 +50,7 @@ std::vector<Finding> variance(const CheckContext& context) {
         all.push_back(measureSeeds(context, fmt::format("variance x n_r at n_r = {:.0f}", inKernel), 4.0 / 3.0, 0.01,
                                    0.15, [&](std::uint64_t seed) {
                                        Independent random(seed);
-                                       double sum = 0.0, square = 0.0;
+                                       double square = 0.0;
                                        int looks = 0;
                                        for (int map = 0; map < 16; ++map) {
                                            PhotonList photons;
@@ -61,7 +61,6 @@ std::vector<Finding> variance(const CheckContext& context) {
                                            for (double y = -0.8; y < 0.81; y += 0.2)
                                                for (double x = -0.8; x < 0.81; x += 0.2, ++looks) {
                                                    const double e = lookUp(caustics, x, y, radius);
-                                                   sum += e;
                                                    square += (e - 1.0) * (e - 1.0);
                                                }
                                        }

@@ -158,19 +158,20 @@ std::vector<Finding> sameDensity(const CheckContext& context) {
     const auto cumulative = [](double x) { return x * x * (3.0 - 2.0 * x); };
     for (const auto& [way, name] : {std::pair(Way::Inversion, "inversion"), std::pair(Way::Rejection, "rejection"),
                                     std::pair(Way::Metropolis, "Metropolis")}) {
-        Finding f = measureSeeds(
-            context, fmt::format("{}: chi^2 over degrees of freedom", name), 1.0, 0.0, 1.0, [&](std::uint64_t seed) {
-                std::array<double, kBins> bins{};
-                for (const double x : draw(way, kCount, seed)) bins[static_cast<std::size_t>(x * kBins)] += 1.0;
-                double chi = 0.0;
-                for (int i = 0; i < kBins; ++i) {
-                    const double mean =
-                        kCount * (cumulative((i + 1.0) / kBins) - cumulative(static_cast<double>(i) / kBins));
-                    chi +=
-                        (bins[static_cast<std::size_t>(i)] - mean) * (bins[static_cast<std::size_t>(i)] - mean) / mean;
-                }
-                return chi / (kBins - 1);
-            });
+        Finding f = measureSeeds(context, fmt::format("{}: chi^2 over degrees of freedom", name), 1.0, 0.0, 1.0,
+                                 [&, drawn = way](std::uint64_t seed) {
+                                     std::array<double, kBins> bins{};
+                                     for (const double x : draw(drawn, kCount, seed))
+                                         bins[static_cast<std::size_t>(x * kBins)] += 1.0;
+                                     double chi = 0.0;
+                                     for (int i = 0; i < kBins; ++i) {
+                                         const double mean = kCount * (cumulative((i + 1.0) / kBins) -
+                                                                       cumulative(static_cast<double>(i) / kBins));
+                                         chi += (bins[static_cast<std::size_t>(i)] - mean) *
+                                                (bins[static_cast<std::size_t>(i)] - mean) / mean;
+                                     }
+                                     return chi / (kBins - 1);
+                                 });
         all.push_back(f);
     }
     return all;

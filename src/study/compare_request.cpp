@@ -84,7 +84,7 @@ std::vector<double> parseTimes(const std::string& text) {
         times.push_back(value);
     }
     std::ranges::sort(times);
-    times.erase(std::ranges::unique(times).begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
     return times;
 }
 
