@@ -32,7 +32,7 @@ void planReference(Plan& plan, const Scene& scene, const RenderRequest& request,
            : sky      ? "an environment shines: few paths from it come to where they are wanted"
                       : "what caustics light in turn path tracing meets by rare chance",
            asked != "auto");
-    if (seen.receivers == 0) return;
+    if (seesNone) return;
     plan.texelWidth = static_cast<float>(request.settings.texelWidth) * seen.medianFootprint;
     decide(plan, "texel irradiance", plan.texelWidth > 0.0F ? "on" : "off",
            fmt::format(

@@ -115,8 +115,7 @@ constexpr auto kParameters = std::to_array<Parameter>({
      "width of the texels by which --method reference shows caustics in mirrors and through glass; 0: by eye paths"},
     {"reference.eye_paths", &Settings::referencePaths, 0, 0, false, false, "auto|path|bdpt", "",
      "what carries every other class of --method reference: path tracing or bidirectional paths; auto: path tracing "
-     "where "
-     "an environment shines and nothing point-like does"},
+     "where nothing point-like shines and there is an environment or no diffuse surface in view"},
     {"cache.mode", &Settings::cache, 0, 0, true, false, "auto|on|off", "",
      "indirect diffuse light by irradiance cache, or traced at every pixel"},
     {"cache.metric", &Settings::cacheMetric, 0, 0, false, false, "ward|tabellion|hessian", "",
