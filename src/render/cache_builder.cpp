@@ -108,7 +108,7 @@ private:
 }  // namespace
 
 CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan,
-                      const GenerationSize& size, std::uint64_t seed, const Workers& workers,
+                      const GenerationSize& size, std::uint64_t seed, const GatherGuide* guide, const Workers& workers,
                       const std::function<bool()>& stop, std::unique_ptr<IrradianceCache> known, std::uint32_t views) {
     CacheBuild build;
     const float error = size.cacheError, read = error * kReadSlack;
@@ -149,7 +149,8 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
                                             seed,
                                             plan.cacheMetric,
                                             context.scene.radius(),
-                                            read};
+                                            read,
+                                            guide};
                 records[i] = gatherRecord(walk, p, options, misses[i], mapped ? &lights[i] : nullptr);
                 rays[i] = walk.rays();
             });

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pellucid/render/plan.h>
+#include <pellucid/transport/gather_guide.h>
 #include <pellucid/transport/irradiance_cache.h>
 
 namespace pellucid {
@@ -22,10 +23,11 @@ struct CacheBuild {
     std::vector<std::uint8_t> plain;  ///< by pixel: left to plain gather, records would serve hardly a pixel each
 };
 
-/// `known`: records to start from, none where empty, that `views` have made. `size` gives Ward's a of this generation; look-ups while rendering use a little more, so that few points miss.
+/// `known`: records to start from, none where empty, that `views` have made. `size` gives Ward's a of this generation; look-ups
+/// while rendering use a little more, so that few points miss. `guide`: see GatherOptions.
 [[nodiscard]] CacheBuild buildCache(const TransportContext& context, const Survey& seen, int width, const Plan& plan,
-                                    const GenerationSize& size, std::uint64_t seed, const Workers& workers,
-                                    const std::function<bool()>& stop, std::unique_ptr<IrradianceCache> known = nullptr,
-                                    std::uint32_t views = 0);
+                                    const GenerationSize& size, std::uint64_t seed, const GatherGuide* guide,
+                                    const Workers& workers, const std::function<bool()>& stop,
+                                    std::unique_ptr<IrradianceCache> known = nullptr, std::uint32_t views = 0);
 
 }  // namespace pellucid

@@ -93,8 +93,8 @@ void IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& 
     const std::uint64_t view = hashOf(view_.survey);
     const bool complete = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
     if (!complete) {
-        if (view_.plan.globalMap) makeMap(light, maps);
-        CacheBuild build = makeRecords(light, maps, clock, cut);
+        const std::unique_ptr<const GatherGuide> guide = view_.plan.globalMap ? makeMap(light, maps) : nullptr;
+        CacheBuild build = makeRecords(light, guide.get(), maps, clock, cut);
         const bool whole = !cut();
         if (whole || first) {
             cacheStage_.records += build.cache->records().size() - records;
@@ -117,17 +117,20 @@ void IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& 
     if (first && loaded_) save();
 }
 
-void IndirectLight::makeMap(LearntLight& light, const Maps& maps) {
+/// With what its photons tell gather rays, if they were shot and that is asked for.
+std::unique_ptr<const GatherGuide> IndirectLight::makeMap(LearntLight& light, const Maps& maps) {
     const StageTimer timer(globalStage_);
     const GlobalPass pass = learnMap(view_.context(maps), view_.survey, light, view_.workers);
     globalStage_.rays += pass.rays;
     globalStage_.photonsEmitted += pass.emitted;
     if (pass.emitted > 0) addEnergy(globalStage_, pass.energy);
     globalStage_.photonsStored += pass.photons.size();
+    if (pass.photons.empty() || !view_.plan.gatherGuide) return nullptr;
+    return std::make_unique<const GatherGuide>(pass.photons, kMaxMapRadius * view_.scene.radius(), view_.workers);
 }
 
-CacheBuild IndirectLight::makeRecords(const LearntLight& light, const Maps& maps, RenderClock& clock,
-                                      const std::function<bool()>& cut) {
+CacheBuild IndirectLight::makeRecords(const LearntLight& light, const GatherGuide* guide, const Maps& maps,
+                                      RenderClock& clock, const std::function<bool()>& cut) {
     const StageTimer timer(cacheStage_, clock, view_.pixels.scale());
     // Gather rays leave to the caustic map what it will hold, also before its first pass.
     const CausticMap none{PhotonList{}};
@@ -135,7 +138,7 @@ CacheBuild IndirectLight::makeRecords(const LearntLight& light, const Maps& maps
     ofGather.global = light.map.get();
     if (view_.plan.causticMap) ofGather.caustic = &none;
     CacheBuild build = buildCache(view_.context(ofGather), view_.survey, view_.camera.width(), view_.plan, light.size,
-                                  light.gatherSeed(), view_.workers, cut,
+                                  light.gatherSeed(), guide, view_.workers, cut,
                                   light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr, light.views);
     cacheStage_.rays += view_.pixels.ofWholeImage(build.rays);
     return build;

@@ -69,9 +69,9 @@ private:
     void save() const;
     void useFrozen();
     [[nodiscard]] LearntLight nextGeneration();
-    void makeMap(LearntLight& light, const Maps& maps);
-    [[nodiscard]] CacheBuild makeRecords(const LearntLight& light, const Maps& maps, RenderClock& clock,
-                                         const std::function<bool()>& cut);
+    [[nodiscard]] std::unique_ptr<const GatherGuide> makeMap(LearntLight& light, const Maps& maps);
+    [[nodiscard]] CacheBuild makeRecords(const LearntLight& light, const GatherGuide* guide, const Maps& maps,
+                                         RenderClock& clock, const std::function<bool()>& cut);
 
     const PreparedView& view_;
     LearntLight light_;                  ///< of the running generation

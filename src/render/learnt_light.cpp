@@ -14,8 +14,6 @@ namespace {
 
 /// Where the global map is evaluated for gather rays.
 constexpr std::size_t kPlaces = 60'000;
-/// Of the scene's radius: the largest kernel of the map.
-constexpr float kMaxMapRadius = 0.1F;
 /// A map serves as it is when at most this share of the places that a view wants is missing.
 constexpr double kMayMiss = 0.01;
 

@@ -15,6 +15,9 @@
 
 namespace pellucid {
 
+/// Of the scene's radius: the largest kernel of the map.
+constexpr float kMaxMapRadius = 0.1F;
+
 struct LearntLight {
     std::uint64_t seed = 0;  ///< of photons, places and gather rays
     std::uint32_t generation = 0;

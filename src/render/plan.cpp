@@ -50,10 +50,13 @@ void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) 
     for (const Material& m : scene.surfaces().materials()) glass = glass || m.transmission > 0.0F;
     for (std::uint32_t l = 0; l < scene.lights().count(); ++l)
         seenLamps = seenLamps || scene.lights().kind(l) == LightKind::Triangle;
-    plan.splitLampChains = glass && seenLamps && (isOn(s.split) || (!plain && !isOff(s.split)));
-    if (glass && seenLamps && !(plain && !isOn(s.split)))
-        decide(plan, "lamps through glass", plan.splitLampChains ? "both ways" : "by chance",
-               "the scene has glass, and lamps that can be seen", s.split != "auto");
+    const bool both = glass && (isOn(s.split) || (!plain && !isOff(s.split)));
+    plan.splitLampChains = both && seenLamps;
+    plan.splitGlass = both && request.method != Method::Sppm;  // whose pixels count the photons of one place
+    if (glass && !(plain && !isOn(s.split)))
+        decide(plan, "eye paths at glass", both ? "both ways" : "by chance",
+               seenLamps ? "the scene has glass, and lamps that can be seen" : "the scene has glass",
+               s.split != "auto");
     if (request.method == Method::Bdpt || plan.bidirectional) return;
     const bool progressive = request.method == Method::Sppm;  // each pixel counts its photons once an iteration
     plan.adaptive = !progressive && (isOn(s.adaptive) || (!plain && !isOff(s.adaptive) && !request.budget.samples));
@@ -174,7 +177,7 @@ Settings resolvedSettings(const Settings& asked, const Plan& plan) {
     s.causticMap = plan.causticMap ? "on" : "off";
     s.cache = plan.cache ? "on" : "off";
     s.guiding = plan.training.empty() ? "off" : "on";
-    s.split = plan.splitLampChains ? "on" : "off";
+    s.split = plan.splitLampChains || plan.splitGlass ? "on" : "off";
     s.adaptive = plan.adaptive ? "on" : "off";
     s.causticPhotons = static_cast<int>(plan.causticPaths);
     s.globalPhotons = static_cast<int>(plan.globalPaths);

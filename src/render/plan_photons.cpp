@@ -187,6 +187,7 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
     plan.growRays = s.gatherRays <= 0;
     plan.globalMap = plan.globalPaths > 0;
     plan.cacheChoice = isOn(s.cacheChoice);
+    plan.gatherGuide = isOn(s.cacheGuide);
     plan.cacheMetric = s.cacheMetric == "ward"        ? CacheMetric::Ward
                        : s.cacheMetric == "tabellion" ? CacheMetric::Tabellion
                                                       : CacheMetric::Hessian;

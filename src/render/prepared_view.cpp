@@ -33,6 +33,7 @@ void prepare(PreparedView& view) {
     view.pilot.photonsEmitted += view.plan.pilotPhotons;
     if (request.method == Method::Reference) view.options.left = {view.plan.lightPass, view.plan.texelWidth > 0.0F};
     view.options.splitLampChains = view.plan.splitLampChains;
+    view.options.splitGlass = view.plan.splitGlass;
     // After the plan, which is that of the whole image.
     view.pixels = RenderedPixels(request.windows, view.camera.width(), view.camera.height());
     for (std::size_t i = 0; i < view.survey.points.size(); ++i)

@@ -29,8 +29,9 @@ constexpr auto kParameters = std::to_array<Parameter>({
     {"path.max_depth", &Settings::maxDepth, 0, 1e6, false, true, "", "vertices",
      "surface vertices of the longest path; 0: no limit. A limit loses light"},
     {"path.split", &Settings::split, 0, 0, true, false, "auto|on|off", "",
-     "lamps seen through smooth glass: reflection and refraction are both followed; auto: not by path and bdpt, the "
-     "plain baselines"},
+     "where the eye sees smooth glass reflection and refraction are both followed (by bdpt and sppm to the lamps "
+     "alone); "
+     "auto: not by path and bdpt, the plain baselines"},
     {"path.adaptive", &Settings::adaptive, 0, 0, true, false, "auto|on|off", "",
      "more samples for noisier pixels; auto: by photon and by reference where it path traces, unless --spp counts "
      "them"},
@@ -125,6 +126,9 @@ constexpr auto kParameters = std::to_array<Parameter>({
      ParameterPass::Cache},
     {"cache.choice", &Settings::cacheChoice, 0, 0, false, false, "on|off", "",
      "where records would serve hardly a pixel each (fine leaves, bumpy normals) light is gathered pixel by pixel",
+     ParameterPass::Cache},
+    {"cache.guide", &Settings::cacheGuide, 0, 0, false, false, "on|off", "",
+     "more gather rays where the photons near a record came from: a bright spot seen through a glass ball",
      ParameterPass::Cache},
     {"cache.error",
      &Settings::cacheError,

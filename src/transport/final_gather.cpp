@@ -20,28 +20,57 @@ namespace {
 /// Of the least radius: distances below it count as this in the gradient.
 constexpr float kNearestShare = 0.05F;
 
-/// Traces the strata's rays.
+/// A point in the unit square of its stratum, as a direction of the frame's coordinates.
+[[nodiscard]] glm::vec3 directionIn(const GatherStrata& strata, int j, int k, const glm::vec2& within) noexcept {
+    const float sin2 = (static_cast<float>(j) + within.x) / static_cast<float>(strata.elevations);
+    const float phi = kTwoPi * (static_cast<float>(k) + within.y) / static_cast<float>(strata.azimuths);
+    const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(0.0F, 1.0F - sin2));
+    return {sine * std::cos(phi), sine * std::sin(phi), cosine};
+}
+
+/// The rays of one gather.
+struct GatherRays {
+    Walk& walk;
+    const GatherPoint& point;
+    const Frame& frame;
+    glm::vec3 origin;
+
+    /// What one of them finds: a direction of its stratum, the distance to what it hit and the radiance from there.
+    [[nodiscard]] GatherCell trace(const GatherStrata& strata, int j, int k, Sampler sampler) const {
+        GatherCell cell;
+        cell.direction = frame.toWorld(directionIn(strata, j, k, sampler.next2D()));
+        cell.distance = std::numeric_limits<float>::infinity();
+        // Below the true surface no light arrives, whatever the shading normal says.
+        if (glm::dot(cell.direction, point.geometricNormal) <= 0.0F) return cell;
+        WalkRay ray;
+        ray.ray = Ray{origin, cell.direction, std::numeric_limits<float>::infinity()};
+        ray.absorption = point.absorption;
+        cell.radiance = walk.gather(ray, sampler, cell.distance);
+        if (!isFinite(cell.radiance)) cell.radiance = Rgb(0.0F);
+        return cell;
+    }
+};
+
+/// Traces the strata's rays: the first of each says where and how far, the mean of all how bright.
 [[nodiscard]] GatherGrid gather(Walk& walk, const GatherPoint& point, const Frame& frame, const GatherOptions& options,
                                 std::uint64_t key) {
     GatherGrid grid(options.rays);
-    const glm::vec3 origin = offsetOrigin(point.position, point.geometricNormal);
+    const GatherRays rays{walk, point, frame, offsetOrigin(point.position, point.geometricNormal)};
+    std::vector<std::uint8_t> wanted;
+    if (options.guide != nullptr) wanted = options.guide->rays(point.position, frame, grid);
     for (int k = 0; k < grid.azimuths; ++k)
         for (int j = 0; j < grid.elevations; ++j) {
-            Sampler sampler(options.seed, key, static_cast<std::uint32_t>(k * grid.elevations + j));
-            const glm::vec2 jitter = sampler.next2D();
-            const float sin2 = (static_cast<float>(j) + jitter.x) / static_cast<float>(grid.elevations);
-            const float phi = kTwoPi * (static_cast<float>(k) + jitter.y) / static_cast<float>(grid.azimuths);
-            const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(0.0F, 1.0F - sin2));
-            GatherCell& cell = grid.at(j, k);
-            cell.direction = frame.toWorld({sine * std::cos(phi), sine * std::sin(phi), cosine});
-            cell.distance = std::numeric_limits<float>::infinity();
-            // Below the true surface no light arrives, whatever the shading normal says.
-            if (glm::dot(cell.direction, point.geometricNormal) <= 0.0F) continue;
-            WalkRay ray;
-            ray.ray = Ray{origin, cell.direction, std::numeric_limits<float>::infinity()};
-            ray.absorption = point.absorption;
-            cell.radiance = walk.gather(ray, sampler, cell.distance);
-            if (!isFinite(cell.radiance)) cell.radiance = Rgb(0.0F);
+            const std::size_t i = grid.index(j, k);
+            const auto sampler = [&](std::size_t number) {
+                return Sampler(options.seed, key, static_cast<std::uint32_t>(number));
+            };
+            GatherCell& cell = grid.cells[i];
+            cell = rays.trace(grid, j, k, sampler(i));
+            const std::size_t count = wanted.empty() ? 1 : wanted[i];
+            for (std::size_t r = 1; r < count; ++r)
+                cell.radiance +=
+                    rays.trace(grid, j, k, sampler(grid.count() + GatherGuide::kMostRays * i + r)).radiance;
+            cell.radiance /= static_cast<float>(count);
         }
     return grid;
 }

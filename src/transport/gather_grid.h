@@ -10,6 +10,7 @@
 
 #include <pellucid/math/constants.h>
 #include <pellucid/math/rgb.h>
+#include <pellucid/transport/gather_guide.h>
 
 namespace pellucid {
 
@@ -19,23 +20,18 @@ struct GatherCell {
     float distance = 0.0F;      ///< to what was hit; infinite where nothing was
 };
 
-/// `elevations` x `azimuths` strata of equal cosine-weighted solid angle: sin^2 theta = (j + xi) / M.
-struct GatherGrid {
-    int elevations, azimuths;
+/// About as many strata as `rays`, three times as many azimuths as elevations: nearly square ones.
+struct GatherGrid : GatherStrata {
     std::vector<GatherCell> cells;
 
-    explicit GatherGrid(int rays)
-        : elevations(std::max(3, static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays) / kPiD))))),
-          azimuths(std::max(7, static_cast<int>(std::lround(kPiD * elevations)))),
-          cells(static_cast<std::size_t>(elevations) * static_cast<std::size_t>(azimuths)) {}
+    explicit GatherGrid(int rays) {
+        elevations = std::max(3, static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays) / kPiD))));
+        azimuths = std::max(7, static_cast<int>(std::lround(kPiD * elevations)));
+        cells.resize(count());
+    }
 
     [[nodiscard]] GatherCell& at(int j, int k) noexcept { return cells[index(j, k)]; }
     [[nodiscard]] const GatherCell& at(int j, int k) const noexcept { return cells[index(j, k)]; }
-
-private:
-    [[nodiscard]] std::size_t index(int j, int k) const noexcept {
-        return static_cast<std::size_t>(k) * static_cast<std::size_t>(elevations) + static_cast<std::size_t>(j);
-    }
 };
 
 }  // namespace pellucid

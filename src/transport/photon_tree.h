@@ -3,9 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include <nanoflann.hpp>
@@ -74,6 +76,31 @@ struct PointSite {
     glm::vec3 position{0.0F};
     template <class Item>
     explicit PointSite(const Item& item) : position(item.position) {}
+};
+
+/// Part of a result set that keeps the nearest items within a bound: a max-heap of (distance^2, index).
+template <int Most>
+struct NearestHeap {
+    int wanted;  ///< at most `Most`
+    float radius2;
+    int found = 0;
+    std::array<std::pair<float, std::uint32_t>, static_cast<std::size_t>(Most)> heap{};
+
+    void init() noexcept {}
+    [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(found); }
+    [[nodiscard]] bool full() const noexcept { return true; }
+    [[nodiscard]] float worstDist() const noexcept { return radius2; }
+    /// `distance2` lies below radius2.
+    void keep(float distance2, std::uint32_t index) noexcept {
+        const auto begin = heap.begin();
+        if (found == wanted) {
+            std::pop_heap(begin, begin + found);
+            --found;
+        }
+        heap[static_cast<std::size_t>(found++)] = {distance2, index};
+        std::push_heap(begin, begin + found);
+        if (found == wanted) radius2 = heap[0].first;
+    }
 };
 
 /// A kd-tree over items with a `position`, which must stay where they are. With `workers` (null: one thread) many items get

@@ -1,7 +1,6 @@
 #include "radiance_point.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <pellucid/math/constants.h>
 #include <pellucid/math/sampler.h>
@@ -19,20 +18,19 @@ constexpr int kNeighbour = 6;
 /// Height of the sectors' rays over the surface, as a share of the kernel's radius.
 constexpr float kSectorHeight = 0.05F;
 
-/// The k nearest photons that arrived indirectly on the same side, within a bound: a max-heap of (distance^2, index).
-struct NearestPhotons {
+/// The k nearest photons that arrived indirectly on the same side, within a bound.
+struct NearestPhotons : NearestHeap<kMaxNeighbours> {
     const PhotonList& photons;
     glm::vec3 point, normal;
     float above, below;
-    int wanted;
-    float radius2;
-    int found = 0;
-    std::array<std::pair<float, std::uint32_t>, kMaxNeighbours> heap{};
 
-    void init() noexcept {}
-    [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(found); }
-    [[nodiscard]] bool full() const noexcept { return true; }
-    [[nodiscard]] float worstDist() const noexcept { return radius2; }
+    NearestPhotons(const PhotonList& list, const RadiancePoint& p, int count, float bound2)
+        : NearestHeap{count, bound2},
+          photons(list),
+          point(p.position),
+          normal(p.normal),
+          above(p.above),
+          below(p.below) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
         if (distance2 >= radius2) return true;
         const Photon& p = photons[index];
@@ -40,14 +38,7 @@ struct NearestPhotons {
         const float height = glm::dot(p.position - point, normal);
         if (height * height > kMaxPlaneDistance * kMaxPlaneDistance * std::max(distance2, 1e-8F)) return true;
         if (height > above || height < -below) return true;
-        const auto begin = heap.begin();
-        if (found == wanted) {
-            std::pop_heap(begin, begin + found);
-            --found;
-        }
-        heap[static_cast<std::size_t>(found++)] = {distance2, index};
-        std::push_heap(begin, begin + found);
-        if (found == wanted) radius2 = heap[0].first;
+        keep(distance2, index);
         return true;
     }
 };
@@ -159,9 +150,7 @@ void estimateIndirect(const Scene& scene, const IndirectPhotons& photons, const 
                       RadiancePoint& p, const RadianceMapOptions& options) {
     const float maxRadius = options.maxRadius;
     measureClearance(scene, p, kMaxPlaneDistance * farthestLookup(maxRadius));
-    NearestPhotons nearest{
-        photons.photons,      p.position, p.normal, p.above, p.below, std::min(options.neighbours, kMaxNeighbours),
-        maxRadius * maxRadius};
+    NearestPhotons nearest(photons.photons, p, std::min(options.neighbours, kMaxNeighbours), maxRadius * maxRadius);
     tree.search(p.position, nearest);
     const bool bounded = nearest.found < nearest.wanted;
     p.radius = bounded ? maxRadius : std::sqrt(nearest.radius2);

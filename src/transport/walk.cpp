@@ -17,6 +17,11 @@ namespace {
 
 /// A look for a D vertex is given up after this many others.
 constexpr int kMostOnTheWay = 64;
+/// Of the threshold of roulette, along smooth chains from the eye whose branches are all followed: a weak reflection in glass
+/// is a small part of a pixel but mostly unlike the rest of it, so it is worth more looks than its share.
+constexpr float kChainRoulette = 0.25F;
+/// A branch takes its numbers from dimensions of its own, so many beyond those of the branch before it.
+constexpr std::uint64_t kDimensionsPerBranch = 1U << 12U;
 /// Sampler dimensions: 0 film, 1 lens, then this many a vertex.
 constexpr std::uint64_t kFirstDimension = 2, kDimensionsPerVertex = 8;
 enum VertexDimension : std::uint64_t {
@@ -53,29 +58,24 @@ struct Onward {
 
 }  // namespace
 
-/// Samples the next direction among `sampled` lobes, with roulette. False: the walk ends.
-bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
-    const float chooseLobe = sampler.next1D();
-    const glm::vec2 u = sampler.next2D();
-    const auto sample =
-        vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance, context_.options.directions);
-    if (!sample) return false;
-    const Onward on = onward(vertex.bsdf, vertex.wo, *sample, sampled, sampler);
-    if (on.kind == kNoLobe) return false;
-    state.deltaChain = state.deltaChain && sample->delta;
-    state.throughput *= on.weight;
-    state.etaScale *= sample->etaScale;
-    state.pass(on.kind);
-    state.pdfSolidAngle = sample->pdfSolidAngle;
+/// Goes on over `sample`, with roulette. False: the walk ends.
+bool Walk::goOn(State& state, const Vertex& vertex, const BsdfSample& sample, const Rgb& weight,
+                Sampler& sampler) noexcept {
+    state.deltaChain = state.deltaChain && sample.delta;
+    state.throughput *= weight;
+    state.etaScale *= sample.etaScale;
+    state.pass(sample.kind);
+    state.pdfSolidAngle = sample.pdfSolidAngle;
+    state.lampSampled = state.pdfSolidAngle > 0.0F;
     state.lightPoint = vertex.hit.point.position;
     state.lightNormal = vertex.lightNormal;
     const glm::vec3& ng = vertex.bsdf.geometricNormal();
-    const bool behindSurface = glm::dot(sample->wi, ng) < 0.0F;
-    state.ray.ray = Ray{offsetOrigin(vertex.hit.point.position, behindSurface ? -ng : ng), sample->wi,
+    const bool behindSurface = glm::dot(sample.wi, ng) < 0.0F;
+    state.ray.ray = Ray{offsetOrigin(vertex.hit.point.position, behindSurface ? -ng : ng), sample.wi,
                         std::numeric_limits<float>::infinity()};
     state.ray.absorption =
-        medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, sample->transmitted);
-    const float threshold = context_.options.rouletteThreshold;
+        medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, sample.transmitted);
+    const float threshold = context_.options.rouletteThreshold * (splits(state) ? kChainRoulette : 1.0F);
     const float wanted = threshold > 0.0F ? maxComponent(state.throughput) * state.etaScale / threshold : 1.0F;
     const float chance = survival(wanted, state.vertices);
     if (!(chance > 0.0F)) return false;
@@ -86,8 +86,38 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
     return true;
 }
 
-bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept {
-    const std::uint64_t dimension = kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
+/// Samples the next direction among `sampled` lobes. False: the walk ends.
+bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
+    const float chooseLobe = sampler.next1D();
+    const glm::vec2 u = sampler.next2D();
+    auto sample =
+        vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance, context_.options.directions);
+    if (!sample) return false;
+    const Onward on = onward(vertex.bsdf, vertex.wo, *sample, sampled, sampler);
+    if (on.kind == kNoLobe) return false;
+    sample->kind = on.kind;
+    return goOn(state, vertex, *sample, on.weight, sampler);
+}
+
+bool Walk::splits(const State& state) const noexcept {
+    return context_.options.splitGlass && state.deltaChain && !state.gathering;
+}
+
+/// Where a smooth interface parts the light the walk goes one way and `other` waits for the other. False: it does not.
+bool Walk::split(State& state, const Vertex& vertex, Sampler& sampler, Branches& branches) noexcept {
+    const DeltaBranches ways = vertex.bsdf.deltaBranches(vertex.wo, TransportMode::Radiance);
+    if (ways.count != 2) return false;
+    for (const BsdfSample& way : ways.branch) {
+        State branch = state;
+        branch.dimensions = kDimensionsPerBranch * ++branches.made;
+        if (goOn(branch, vertex, way, way.weight, sampler)) branches.waiting.push_back(branch);
+    }
+    return true;
+}
+
+bool Walk::step(State& state, Branches& branches, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept {
+    const std::uint64_t dimension =
+        kFirstDimension + state.dimensions + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
     sampler.setDimension(dimension + kCoin);
     ++rays_;
     const auto hit = context_.scene.intersect(state.ray.ray, holes_ ? sampler.next1D() : 0.0F);
@@ -140,9 +170,8 @@ bool Walk::step(State& state, Sampler& sampler, FirstHit* first, float* firstDis
     if (direct != kNoLobe) addDirect(state, vertex, direct, sampled, sampler);
     if (sampled == kNoLobe) return false;
     sampler.setDimension(dimension + kLobeChoice);
-    if (!scatter(state, vertex, sampled, sampler)) return false;
-    state.lampSampled = state.pdfSolidAngle > 0.0F;
-    return true;
+    if (sampled == kSpecular && splits(state) && split(state, vertex, sampler, branches)) return false;
+    return scatter(state, vertex, sampled, sampler);
 }
 
 void Walk::write(const State& state, const SurfaceHit* hit, const Bsdf* bsdf) const {
@@ -167,7 +196,15 @@ void Walk::write(const State& state, const SurfaceHit* hit, const Bsdf* bsdf) co
 }
 
 void Walk::run(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept {
-    while (step(state, sampler, first, firstDistance)) {
+    Branches branches;
+    for (;;) {
+        while (step(state, branches, sampler, first, firstDistance)) {
+        }
+        if (branches.waiting.empty()) return;
+        const LayeredRadiance sum = state.radiance;
+        state = branches.waiting.back();
+        branches.waiting.pop_back();
+        state.radiance = sum;
     }
 }
 

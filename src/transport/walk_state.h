@@ -1,6 +1,9 @@
 /// What a walk knows on its way, and the vertex where it stands. Private to the room.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <pellucid/transport/walk.h>
 
 namespace pellucid {
@@ -25,15 +28,16 @@ struct Walk::State {
     glm::vec3 lightPoint{0.0F}, lightNormal{0.0F};  ///< where next-event estimation stood
     float etaScale = 1.0F, pathLength = 0.0F;
     int vertices = 0;
-    bool gathering = false;      ///< behind the first D vertex: the global map may answer
-    bool deltaChain = true;      ///< from the eye: no other lobe so far
-    bool lampsFollowed = false;  ///< over that chain, by LampChains
-    bool chainsNext = false;     ///< at this D vertex: the cache has served all but the caustics
-    bool sharedNext = false;     ///< at this D vertex: photons have brought their share of the caustics
-    bool onlyChains = false;     ///< behind it: S lobes alone go on
-    bool chainsShared = false;   ///< behind it: what comes over S alone has the eye's share only
-    float kernelRadius = 0.0F;   ///< at that D vertex
-    bool causticServed = false;  ///< at this D vertex: what comes over S alone is counted
+    std::uint64_t dimensions = 0;  ///< of the sampler, to leave out: other branches have them
+    bool gathering = false;        ///< behind the first D vertex: the global map may answer
+    bool deltaChain = true;        ///< from the eye: no other lobe so far
+    bool lampsFollowed = false;    ///< over that chain, by LampChains
+    bool chainsNext = false;       ///< at this D vertex: the cache has served all but the caustics
+    bool sharedNext = false;       ///< at this D vertex: photons have brought their share of the caustics
+    bool onlyChains = false;       ///< behind it: S lobes alone go on
+    bool chainsShared = false;     ///< behind it: what comes over S alone has the eye's share only
+    float kernelRadius = 0.0F;     ///< at that D vertex
+    bool causticServed = false;    ///< at this D vertex: what comes over S alone is counted
 
     /// Goes on over a lobe of this kind.
     void pass(LobeKinds kind) noexcept {
@@ -58,6 +62,12 @@ struct Walk::State {
         if (chainEmpty) return !skipDirect;
         return behind != Behind::CausticMapped || !chainSpecular;
     }
+};
+
+/// Of one walk over smooth glass.
+struct Walk::Branches {
+    std::vector<State> waiting;
+    std::uint64_t made = 0;
 };
 
 struct Walk::Vertex {

@@ -1,4 +1,4 @@
-/// How eye samples are spread: over noisy pixels, and over both ways that an interface leads to a lamp. Neither may change
+/// How eye samples are spread: over noisy pixels, and over both ways that an interface leads. Neither may change
 /// what the image means, nor its bits with threads or a break.
 #include <utility>
 
@@ -68,6 +68,29 @@ TEST(EyeSamples, SplitLampChainsTameGlints) {
     split.settings = with({}, "path.split", "on");
     EXPECT_LT(variance(renderSeeds(scene, split, workers), "emission"),
               0.5 * variance(renderSeeds(scene, plain, workers), "emission"));
+}
+
+/// A pane before a bright wall that mirrors the dark: one look in twenty found nothing.
+TEST(EyeSamples, BothWaysAtGlassTakeItsNoise) {
+    const Workers workers;
+    check::SceneBuilder b;
+    b.box({-1, -1, 0}, {1, 1, 0.1}, check::glass(1.5F));
+    b.square({0, 0, -0.5}, {0, 0, 1}, 3.0, check::lambert(0.8F));
+    b.point({0, 1.6, -0.25}, 3.0);
+    b.perspective({0, 0, 3}, {0, 0, 0}, 0.5);
+    const Scene scene(b.description(), std::nullopt, SceneOptions{}, workers);
+    Rendering plain{Method::Path, 16, 16};
+    plain.width = plain.height = 24;
+    plain.settings = with({}, "path.split", "off");
+    Rendering split = plain;
+    split.settings = with({}, "path.split", "on");
+    split.firstSeed = 1000;
+    const auto a = renderSeeds(scene, plain, workers), s = renderSeeds(scene, split, workers);
+    EXPECT_LT(variance(s, "direct"), 0.1 * variance(a, "direct"));
+    for (const char* layer : {"direct", "indirect"}) {
+        const Agreement agreement = agreementOf(valuesOf(a, 4, layer), valuesOf(s, 4, layer));
+        EXPECT_TRUE(agreement.holds(sidakLevel(2))) << layer << ": " << agreement;
+    }
 }
 
 /// One pixel's noise feeds its later shares: a mean in which noisier pixels counted their samples more would be off.

@@ -43,6 +43,7 @@ struct Plan {
     float cacheError = 0.25F;
     CacheMetric cacheMetric = CacheMetric::Hessian;
     bool cacheChoice = true;             ///< where records do not pay, points gather for themselves
+    bool gatherGuide = true;             ///< more gather rays where photons come from
     int gatherRays = 128;                ///< a record, in the first generation
     std::uint32_t mostCausticPaths = 0;  ///< of any iteration, for photon.memory; 0: no limit
     std::uint32_t mostGlobalPaths = 0;   ///< of any generation, for photon.memory; 0: no limit
@@ -54,6 +55,7 @@ struct Plan {
     bool bidirectional = false;    ///< eye paths meet light paths
     float texelWidth = 0.0F;       ///< of the texel irradiance, scene units; 0: off
     bool splitLampChains = false;  ///< lamps seen through smooth glass: both ways at each interface
+    bool splitGlass = false;       ///< and all else
     bool adaptive = false;         ///< pixels take samples by their noise
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;

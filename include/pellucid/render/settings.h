@@ -46,6 +46,7 @@ struct Settings {
     std::string cache = "auto";           ///< cache.mode: auto | on | off
     std::string cacheMetric = "hessian";  ///< cache.metric: ward | tabellion | hessian
     std::string cacheChoice = "on";       ///< cache.choice: on | off
+    std::string cacheGuide = "on";        ///< cache.guide: on | off
     double cacheError = -1.0;             ///< cache.error: Ward's a
     int gatherRays = -1;                  ///< cache.rays: gather rays a record
     double minSpacing = -1.0;             ///< cache.min_spacing: in pixel footprints

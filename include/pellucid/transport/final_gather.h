@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include <pellucid/transport/cache_metric.h>
+#include <pellucid/transport/gather_guide.h>
 #include <pellucid/transport/irradiance_cache.h>
 #include <pellucid/transport/walk.h>
 
@@ -16,8 +17,9 @@ struct GatherOptions {
     float minRadius = 0.0F, maxRadius = 1.0F;  ///< bounds of R, scene units
     std::uint64_t seed = 0;
     CacheMetric metric = CacheMetric::Ward;
-    float sceneRadius = 1.0F;  ///< the unit of the Hessian's radii
-    float reach = 1.0F;        ///< of the radius: how far look-ups may lie
+    float sceneRadius = 1.0F;            ///< the unit of the Hessian's radii
+    float reach = 1.0F;                  ///< of the radius: how far look-ups may lie
+    const GatherGuide* guide = nullptr;  ///< more rays where photons come from; null: one a stratum
 };
 
 /// `point` must be valid; the record is of its normal without normal maps. `key` identifies the record among all of the render.

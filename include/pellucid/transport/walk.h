@@ -52,6 +52,7 @@ struct TransportOptions {
     int maxDepth = 0;                ///< surface vertices; 0: no limit
     LeftClasses left;                ///< classes that others carry
     bool splitLampChains = false;    ///< E S* L over glass: by LampChains, not by chance
+    bool splitGlass = false;         ///< smooth glass seen by the eye: both ways at each interface, not one by chance
 };
 
 struct TransportContext {
@@ -136,8 +137,14 @@ public:
 private:
     struct State;
     struct Vertex;
+    struct Branches;
     void run(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept;
-    [[nodiscard]] bool step(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept;
+    [[nodiscard]] bool step(State& state, Branches& branches, Sampler& sampler, FirstHit* first,
+                            float* firstDistance) noexcept;
+    [[nodiscard]] bool splits(const State& state) const noexcept;
+    [[nodiscard]] bool split(State& state, const Vertex& vertex, Sampler& sampler, Branches& branches) noexcept;
+    [[nodiscard]] bool goOn(State& state, const Vertex& vertex, const BsdfSample& sample, const Rgb& weight,
+                            Sampler& sampler) noexcept;
     [[nodiscard]] float chainShare(const State& state, std::uint32_t light, const glm::vec3& towards) const noexcept;
     void addEscaped(State& state) const noexcept;
     void addEmitted(State& state, const SurfaceHit& hit) const noexcept;

@@ -1,0 +1,49 @@
+/// Where the light comes from that a gather measures: photons of the global pass that arrived near a point tell by which strata
+/// of its hemisphere. [Jensen1995] draws gather rays from such a histogram; here the strata stay, as gradients and Hessian want
+/// them, and those that many photons came through get more rays: a bright spot seen through a glass ball fills a part of one
+/// stratum that a single ray mostly misses. The rays know nothing of the photons' noise, so nothing is biased.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <pellucid/base/parallel.h>
+#include <pellucid/math/frame.h>
+#include <pellucid/transport/radiance_map.h>
+
+namespace pellucid {
+
+/// M x N strata of a hemisphere of equal cosine-weighted solid angle: sin^2 theta = (j + xi) / M, phi = 2 pi (k + xi) / N.
+struct GatherStrata {
+    int elevations = 0, azimuths = 0;
+
+    [[nodiscard]] std::size_t count() const noexcept {
+        return static_cast<std::size_t>(elevations) * static_cast<std::size_t>(azimuths);
+    }
+    [[nodiscard]] std::size_t index(int j, int k) const noexcept {
+        return static_cast<std::size_t>(k) * static_cast<std::size_t>(elevations) + static_cast<std::size_t>(j);
+    }
+    /// Of a unit direction over the horizon, in the frame's coordinates.
+    [[nodiscard]] std::size_t containing(const glm::vec3& local) const noexcept;
+};
+
+class GatherGuide {
+public:
+    static constexpr std::uint8_t kMostRays = 32;  ///< a stratum
+
+    /// Of a pass, the photons that came neither directly nor over S alone: the class that gather rays carry. They are looked
+    /// for as far away as `farthest`, scene units.
+    GatherGuide(const std::vector<GlobalPhoton>& photons, float farthest, const Workers& workers);
+    ~GatherGuide();
+
+    /// How many rays each stratum gets, at least 1.
+    [[nodiscard]] std::vector<std::uint8_t> rays(const glm::vec3& position, const Frame& frame,
+                                                 const GatherStrata& strata) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pellucid

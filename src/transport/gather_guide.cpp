@@ -1,0 +1,93 @@
+#include <pellucid/transport/gather_guide.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pellucid/math/constants.h>
+
+#include "photon_tree.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kNearest = 64;
+/// Fewer photons tell nothing.
+constexpr int kFewest = 16;
+/// A stratum is bright if so many more photons came through it than would of a uniform sky: of 128 strata one in five hundred
+/// gets rays that it does not need.
+constexpr float kMoreThanChance = 3.0F;
+/// Photons on surfaces that face elsewhere are not asked.
+constexpr float kLeastCosine = 0.8F;
+
+[[nodiscard]] PhotonList otherPhotons(const std::vector<GlobalPhoton>& photons) {
+    PhotonList list;
+    for (const GlobalPhoton& p : photons)
+        if (p.arrived == Arrived::Otherwise) list.push_back(p.photon);
+    sortAlongMortonCurve(list);
+    return list;
+}
+
+struct NearestOnSide : NearestHeap<kNearest> {
+    const PhotonList& photons;
+    glm::vec3 normal;
+
+    NearestOnSide(const PhotonList& list, const glm::vec3& side, float bound2)
+        : NearestHeap{kNearest, bound2}, photons(list), normal(side) {}
+    bool addPoint(float distance2, std::uint32_t index) noexcept {
+        if (distance2 < radius2 && glm::dot(photons[index].normal, normal) >= kLeastCosine) keep(distance2, index);
+        return true;
+    }
+};
+
+}  // namespace
+
+std::size_t GatherStrata::containing(const glm::vec3& local) const noexcept {
+    const float sin2 = local.x * local.x + local.y * local.y;
+    const float phi = std::atan2(local.y, local.x), turn = (phi < 0.0F ? phi + kTwoPi : phi) / kTwoPi;
+    const int j = std::min(elevations - 1, static_cast<int>(sin2 * static_cast<float>(elevations)));
+    const int k = std::min(azimuths - 1, static_cast<int>(turn * static_cast<float>(azimuths)));
+    return index(j, k);
+}
+
+struct GatherGuide::Impl {
+    PhotonList photons;
+    PointTree<Photon> tree;
+    float farthest;
+
+    Impl(const std::vector<GlobalPhoton>& list, float bound, const Workers& workers)
+        : photons(otherPhotons(list)), tree(photons, &workers), farthest(bound) {}
+};
+
+GatherGuide::GatherGuide(const std::vector<GlobalPhoton>& photons, float farthest, const Workers& workers)
+    : impl_(std::make_unique<Impl>(photons, farthest, workers)) {}
+GatherGuide::~GatherGuide() = default;
+
+std::vector<std::uint8_t> GatherGuide::rays(const glm::vec3& position, const Frame& frame,
+                                            const GatherStrata& strata) const {
+    std::vector<std::uint8_t> counts(strata.count(), 1);
+    NearestOnSide near(impl_->photons, frame.normal, impl_->farthest * impl_->farthest);
+    impl_->tree.search(position, near);
+    if (near.found < kFewest) return counts;
+    std::vector<float> flux(strata.count(), 0.0F);
+    float all = 0.0F;
+    for (int i = 0; i < near.found; ++i) {
+        const Photon& photon = impl_->photons[near.heap[static_cast<std::size_t>(i)].second];
+        const glm::vec3 local = frame.toLocal(photon.wi);
+        if (local.z <= 0.0F) continue;
+        const float y = luminance(photon.flux);
+        flux[strata.containing(local)] += y;
+        all += y;
+    }
+    if (!(all > 0.0F)) return counts;
+    const auto n = static_cast<float>(strata.count());
+    const float bright = 1.0F / n + kMoreThanChance / static_cast<float>(near.found);
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        const float share = flux[i] / all;
+        if (share > bright)
+            counts[i] = static_cast<std::uint8_t>(std::clamp(share * n, 1.0F, static_cast<float>(kMostRays)));
+    }
+    return counts;
+}
+
+}  // namespace pellucid
