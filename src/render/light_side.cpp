@@ -7,14 +7,24 @@
 
 namespace pellucid {
 
+namespace {
+
+/// Caustics of caustics are softer and fewer photons make them.
+constexpr float kWiderBounced = 2.0F;
+
+}  // namespace
+
 LightSide::LightSide(const PreparedView& view) : view_(view) {
-    if (view.plan.texelWidth > 0.0F)
-        texels_ = std::make_unique<TexelIrradiance>(view.scene, view.camera, view.plan.texelWidth);
+    const float width = view.plan.texelWidth;
+    if (!(width > 0.0F)) return;
+    texels_ = std::make_unique<TexelIrradiance>(view.scene, view.camera, width, kSeenCaustic);
+    bounced_ = std::make_unique<TexelIrradiance>(view.scene, view.camera, kWiderBounced * width, kSeenCausticOfCaustic);
 }
 
 std::vector<LightSplat> LightSide::pass(PhotonSource& source, std::uint32_t iteration) {
     const StageTimer timer(stage_);
-    if (texels_) texels_->look(view_.request.seed, iteration, view_.workers);
+    for (const auto& texels : {texels_.get(), bounced_.get()})
+        if (texels != nullptr) texels->look(view_.request.seed, iteration, view_.workers);
     LightPass pass = traceLightPaths(view_.scene, view_.camera, source.guide(),
                                      {view_.request.seed, kLightPass + iteration, source.paths()}, view_.workers,
                                      texels_ ? &view_.survey.visible : nullptr);
@@ -23,6 +33,8 @@ std::vector<LightSplat> LightSide::pass(PhotonSource& source, std::uint32_t iter
     if (texels_) {
         texels_->deposit(pass.arrivals, iteration);
         texels_->resolve(iteration, pass.splats);
+        bounced_->deposit(pass.bounced, iteration);
+        bounced_->resolve(iteration, pass.splats);
     }
     if (source.learnsFrom(iteration)) source.learn(std::move(pass.useful));
     return std::move(pass.splats);

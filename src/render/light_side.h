@@ -26,7 +26,8 @@ public:
 
 private:
     const PreparedView& view_;
-    std::unique_ptr<TexelIrradiance> texels_;  ///< none: the plan has none
+    std::unique_ptr<TexelIrradiance> texels_;   ///< none: the plan has none
+    std::unique_ptr<TexelIrradiance> bounced_;  ///< beside them, for what caustics make in turn
     StageRecord stage_{"light tracing"};
 };
 

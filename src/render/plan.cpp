@@ -87,8 +87,8 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
     if (request.method == Method::Reference)
         plan.blindSpots.push_back(
             which + (plan.texelWidth > 0.0F
-                         ? "caustics of caustics that are themselves seen in a perfect mirror or through smooth glass "
-                           "(E S+ D S+ D S+ L) and caustics on rough metal seen so are missing"
+                         ? "what caustics make over casters twice and more, seen in a perfect mirror or through smooth "
+                           "glass (E S+ D S+ D S+ D S+ L), and caustics on rough metal seen so are missing"
                          : "caustics that are themselves seen through glass or in a mirror (E S+ D S+ L) are missing"));
     if (request.method == Method::Bdpt)
         plan.blindSpots.push_back(which +

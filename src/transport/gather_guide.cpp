@@ -11,12 +11,12 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kNearest = 64;
+constexpr int kNearest = 128;
 /// Fewer photons tell nothing.
 constexpr int kFewest = 16;
 /// A stratum is bright if so many more photons came through it than would of a uniform sky: of 128 strata one in five hundred
 /// gets rays that it does not need.
-constexpr float kMoreThanChance = 3.0F;
+constexpr float kMoreThanChance = 1.0F;
 /// Photons on surfaces that face elsewhere are not asked.
 constexpr float kLeastCosine = 0.8F;
 

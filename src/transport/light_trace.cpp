@@ -42,6 +42,29 @@ namespace {
     return true;
 }
 
+[[nodiscard]] CausticArrival arrivalOf(const Arrival& a, const Rgb& flux) noexcept {
+    return {a.hit.point.geometry,
+            a.hit.point.primitive,
+            a.hit.point.barycentric,
+            a.bsdf.backSide(),
+            std::min(1.0F, std::fabs(glm::dot(a.wi, a.bsdf.shadingNormal()))),
+            flux * a.shading};
+}
+
+/// From the receiver of a caustic on over casters alone. A copy of the path: its light has been counted.
+void bounceOn(const Scene& scene, LightPath path, const Arrival& receiver, Sampler sampler, float perPath,
+              LightPass& out) {
+    if (!scatter(scene, path, receiver, kDiffuse, sampler)) return;
+    for (bool overCaster = false;; overCaster = true) {
+        ++out.rays;
+        const auto a = arrive(scene, path, sampler);
+        if (!a) return;
+        if (overCaster && (a->bsdf.kinds() & kDiffuse) != kNoLobe)
+            out.bounced.push_back(arrivalOf(*a, path.flux * perPath));
+        if (!scatter(scene, path, *a, kSpecular, sampler)) return;
+    }
+}
+
 }  // namespace
 
 LightPass traceLightPaths(const Scene& scene, const Camera& camera, const EmissionGuide& guide,
@@ -65,11 +88,11 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
                 const bool splatted = connect(scene, camera, *a, path.flux * perPath, lens, out);
                 if (splatted) path.sink = &EnergyBalance::stored;
                 if (splatted || (kept && looked->seen(a->hit.point.position))) arrived += luminance(path.flux);
-                if (kept)
-                    out.arrivals.push_back({a->hit.point.geometry, a->hit.point.primitive, a->hit.point.barycentric,
-                                            a->bsdf.backSide(),
-                                            std::min(1.0F, std::fabs(glm::dot(a->wi, a->bsdf.shadingNormal()))),
-                                            path.flux * (a->shading * perPath)});
+                if (kept) {
+                    out.arrivals.push_back(arrivalOf(*a, path.flux * perPath));
+                    const std::uint64_t stream = hashCombine(key.pass, static_cast<std::uint64_t>(path.vertices));
+                    bounceOn(scene, path, *a, Sampler(key.seed, stream, index), perPath, out);
+                }
             }
             if (!scatter(scene, path, *a, kSpecular, sampler)) break;
         }
@@ -84,6 +107,7 @@ LightPass traceLightPaths(const Scene& scene, const Camera& camera, const Emissi
     pass.emitted = key.paths;
     gather(pass.splats, chunks, &LightPass::splats);
     gather(pass.arrivals, chunks, &LightPass::arrivals);
+    gather(pass.bounced, chunks, &LightPass::bounced);
     gather(pass.useful, chunks, &LightPass::useful);
     for (const LightPass& c : chunks) {
         pass.rays += c.rays;

@@ -6,8 +6,8 @@ namespace pellucid {
 
 std::string PathString::name() const {
     std::string text = "E";
-    for (unsigned rest = code_ & 63U; rest != 0; rest >>= 2U) text += "?SGD"[rest & 3U];
-    if ((code_ & kOn) != 0) text += '_';
+    for (unsigned rest = code() & kNamed; rest != 0; rest >>= 2U) text += "?SGD"[rest & 3U];
+    if (code() > kNamed) text += '_';
     return text + 'L';
 }
 

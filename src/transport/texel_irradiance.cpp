@@ -121,8 +121,6 @@ void TexelIrradiance::deposit(const std::vector<CausticArrival>& arrivals, std::
 }
 
 void TexelIrradiance::resolve(std::uint32_t pass, std::vector<LightSplat>& splats) {
-    PathString path;
-    for (const LobeKinds kind : {kSpecular, kDiffuse, kSpecular}) path.pass(kind);
     for (const Look& l : looks_) {
         const Texel& texel = texels_.find(l.place.key)->second;
         // Passes of this parity from the texel's first one on, this one included.
@@ -143,7 +141,7 @@ void TexelIrradiance::resolve(std::uint32_t pass, std::vector<LightSplat>& splat
         value *= l.weight;
         seen_[l.pixel][0] += static_cast<double>(luminance(coarse * l.weight));
         seen_[l.pixel][1] += static_cast<double>(luminance(value));
-        if (!isBlack(value)) splats.push_back({l.pixel, value, path});
+        if (!isBlack(value)) splats.push_back({l.pixel, value, path_});
     }
 }
 

@@ -76,16 +76,14 @@ inline double photonAllowance(const std::string& group) {
     return group.ends_with("DSL") ? 0.03 : 0.0;
 }
 
-/// Every class of `measured` has the energy that it has in `reference`. `name`: of the scene. `blind`: the reference lacks
-/// E S+ D S+ D S+ L, as it says of point-like lights, and is a lower bound of the group where that is.
+/// Every class of `measured` has the energy that it has in `reference`. `name`: of the scene.
 inline void expectSameEnergy(const std::string& name, const std::vector<Image>& reference,
-                             const std::vector<Image>& measured, bool blind = false) {
+                             const std::vector<Image>& measured) {
     for (const GroupDifference& d : compareGroups(reference, measured, photonAllowance, 0.004)) {
         std::ostringstream text;
         text << name << ", " << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
         std::cout << text.str() << "\n";
-        const bool lacks = blind && d.group == "ESD..L" && d.measured > d.expected;
-        EXPECT_TRUE(d.holds() || lacks) << text.str();
+        EXPECT_TRUE(d.holds()) << text.str();
     }
 }
 

@@ -354,5 +354,34 @@ TEST(TexelIrradiance, ReferenceMeansWhatPathTracingMeans) {
         EXPECT_TRUE(d.holds()) << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
 }
 
+/// A white floor under a pane: what the pane lets through to it comes back from the pane's underside as well, and the eye sees
+/// both through the pane. Without E S+ D S+ D S+ L the last group would lack most of its light.
+TEST(TexelIrradiance, CausticsOfCausticsAreThereToo) {
+    check::SceneBuilder b;
+    b.quad({-1.5, 0, 1.5}, {3, 0, 0}, {0, 0, -3}, check::lambert(0.9F));
+    b.box({-1.4, 0.3, -1.4}, {1.4, 0.4, 1.4}, check::glass(1.8F));
+    b.square({0.0, 1.6, 0.0}, {0, -1, 0}, 0.5, check::lamp(8.0F));
+    b.perspective({1.2, 1.5, 0.0}, {0.2, 0.0, 0.0}, 0.3);
+    const Workers workers;
+    const Scene scene(b.description(), std::nullopt, SceneOptions{}, workers);
+    Rendering path{Method::Path, 400, 6};
+    path.width = path.height = 16;
+    path.layers = {"classes"};
+    Rendering reference = path;
+    reference.method = Method::Reference;
+    reference.samples = 64;
+    reference.firstSeed = 300;
+    bool seen = false;
+    for (const GroupDifference& d : compareGroups(
+             renderSeeds(scene, path, workers), renderSeeds(scene, reference, workers),
+             [](const std::string&) { return 0.01; }, 0.0)) {
+        EXPECT_TRUE(d.holds()) << d.group << ": " << d.measured << " for " << d.expected << " +- " << d.error;
+        if (d.group != "ESD..L") continue;
+        seen = true;
+        EXPECT_LT(d.error, 0.03 * d.expected) << "tells if it is missing";
+    }
+    EXPECT_TRUE(seen);
+}
+
 }  // namespace
 }  // namespace pellucid

@@ -31,6 +31,8 @@ struct CausticArrival {
 struct LightPass {
     std::vector<LightSplat> splats;        ///< in the order of the paths
     std::vector<CausticArrival> arrivals;  ///< with `looked` only
+    /// Then also what the receivers of those throw on casters in turn, where it arrives: L S+ D S+ D.
+    std::vector<CausticArrival> bounced;
     std::vector<UsefulEmission> useful;
     std::uint64_t rays = 0, emitted = 0;
     EnergyBalance energy;  ///< of the pass, scene units

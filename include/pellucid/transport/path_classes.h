@@ -36,45 +36,59 @@ namespace pellucid {
 enum class PathClass : std::uint8_t { Emission, Direct, Caustic, Indirect };
 inline constexpr int kPathClasses = 4;
 
-/// The string of a path's vertices, in seven bits: three letters of two bits (first letter lowest) and "goes on".
+/// The string of a path's vertices: letters of two bits (first letter lowest) and "goes on". Five letters are told apart, three
+/// have names and codes.
 class PathString {
 public:
     static constexpr int kCodes = 128;
 
     constexpr PathString() noexcept = default;
     constexpr bool operator==(const PathString&) const noexcept = default;
-    constexpr explicit PathString(std::uint8_t code) noexcept : code_(code) {}
+    constexpr explicit PathString(std::uint8_t code) noexcept
+        : letters_(code & kNamed), goesOn_((code & (kNamed + 1U)) != 0) {}
 
     /// The path goes over one more vertex by a lobe of this kind (exactly one bit).
     constexpr void pass(LobeKinds kind) noexcept {
-        if ((code_ & kOn) != 0) return;
+        if (goesOn_) return;
         const unsigned letter = kind == kSpecular ? kS : kind == kGlossy ? kG : kD;
         unsigned place = 0;
-        while (place < 3 && (unsigned{code_} >> (2 * place) & 3U) != 0) ++place;
-        if (letter == kS && place > 0 && (unsigned{code_} >> (2 * place - 2) & 3U) == kS) return;
-        code_ = static_cast<std::uint8_t>(place < 3 ? code_ | letter << (2 * place) : code_ | kOn);
+        while (place < kLetters && (unsigned{letters_} >> (2 * place) & 3U) != 0) ++place;
+        if (letter == kS && place > 0 && (unsigned{letters_} >> (2 * place - 2) & 3U) == kS) return;
+        if (place < kLetters)
+            letters_ = static_cast<std::uint16_t>(letters_ | letter << (2 * place));
+        else
+            goesOn_ = true;
     }
     /// The same with everything behind it left open.
     [[nodiscard]] constexpr PathString open() const noexcept {
-        return PathString(static_cast<std::uint8_t>(code_ | kOn));
+        PathString all = *this;
+        all.goesOn_ = true;
+        return all;
     }
 
-    [[nodiscard]] constexpr std::uint8_t code() const noexcept { return code_; }
+    /// Below kCodes: the first three letters, and whether anything comes after them.
+    [[nodiscard]] constexpr std::uint8_t code() const noexcept {
+        const bool more = goesOn_ || letters_ > kNamed;
+        return static_cast<std::uint8_t>((letters_ & kNamed) | (more ? kNamed + 1U : 0U));
+    }
     /// "EDSL", "ED_L".
     [[nodiscard]] std::string name() const;
 
     /// The layer of a path whose vertices are these.
     [[nodiscard]] constexpr PathClass layer() const noexcept {
-        unsigned rest = code_;
-        if ((rest & 3U) == kS) rest >>= 2U;  // (the flag "goes on" moves, too, but is never 0 afterwards)
-        if (rest == 0) return PathClass::Emission;
-        if (rest <= kD) return PathClass::Direct;
-        return rest == (kG | kS << 2U) || rest == (kD | kS << 2U) ? PathClass::Caustic : PathClass::Indirect;
+        unsigned rest = letters_;
+        if ((rest & 3U) == kS) rest >>= 2U;
+        if (rest == 0) return goesOn_ ? PathClass::Indirect : PathClass::Emission;
+        if (rest <= kD) return goesOn_ ? PathClass::Indirect : PathClass::Direct;
+        return !goesOn_ && (rest == (kG | kS << 2U) || rest == (kD | kS << 2U)) ? PathClass::Caustic
+                                                                                : PathClass::Indirect;
     }
 
 private:
-    static constexpr unsigned kS = 1, kG = 2, kD = 3, kOn = 64;
-    std::uint8_t code_ = 0;
+    static constexpr unsigned kS = 1, kG = 2, kD = 3, kLetters = 5;
+    static constexpr unsigned kNamed = 63;  ///< bits of three letters
+    std::uint16_t letters_ = 0;
+    bool goesOn_ = false;
 };
 
 /// The string over these kinds of lobes, from the eye.
@@ -84,15 +98,18 @@ private:
     return path;
 }
 
+inline constexpr PathString kSeenCaustic = stringOver({kSpecular, kDiffuse, kSpecular});
+inline constexpr PathString kSeenCausticOfCaustic = stringOver({kSpecular, kDiffuse, kSpecular, kDiffuse, kSpecular});
+
 /// Classes that another estimator carries: a walk adds nothing to them.
 struct LeftClasses {
     bool caustics = false;      ///< E X S+ L: light tracing
-    bool seenCaustics = false;  ///< E S+ D S+ L: texel irradiance
+    bool seenCaustics = false;  ///< E S+ D S+ L and E S+ D S+ D S+ L: texel irradiance
 
     [[nodiscard]] constexpr bool has(PathString path) const noexcept {
         if (caustics && (path == stringOver({kDiffuse, kSpecular}) || path == stringOver({kGlossy, kSpecular})))
             return true;
-        return seenCaustics && path == stringOver({kSpecular, kDiffuse, kSpecular});
+        return seenCaustics && (path == kSeenCaustic || path == kSeenCausticOfCaustic);
     }
 };
 

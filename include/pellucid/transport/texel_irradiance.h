@@ -1,4 +1,5 @@
-/// The reference for caustics that are themselves seen in a mirror or through glass, E S+ D S+ L: light paths fill fine
+/// The reference for caustics that are themselves seen in a mirror or through glass, E S+ D S+ L, and for what caustics make in
+/// turn, E S+ D S+ D S+ L: light paths fill fine
 /// texels on the receivers in double precision, eye paths look through their S chain at them. Every light is seen, point
 /// lights too. Bias enters here, and only by the box of a texel, h^2 lap E / 24 to first order: each look-up is made at h
 /// and at h/2 and extrapolated, (4 E(h/2) - E(h)) / 3; what the extrapolation moved is the error bar.
@@ -21,15 +22,15 @@ namespace pellucid {
 
 class TexelIrradiance {
 public:
-    /// `width`: of a coarse texel (h), scene units.
-    TexelIrradiance(const Scene& scene, const Camera& camera, float width)
-        : scene_(scene), camera_(camera), width_(width) {}
+    /// `width`: of a coarse texel (h), scene units. `path`: the class, E S+ D ...
+    TexelIrradiance(const Scene& scene, const Camera& camera, float width, PathString path)
+        : scene_(scene), camera_(camera), width_(width), path_(path) {}
 
     /// One iteration, part one: an eye path a pixel over S lobes to a D vertex. Keeps the texels that they meet.
     void look(std::uint64_t seed, std::uint32_t pass, const Workers& workers);
     /// Part two: the light of a pass that arrives over S lobes. In the order of the paths.
     void deposit(const std::vector<CausticArrival>& arrivals, std::uint32_t pass);
-    /// Part three: what the eye paths of part one see, as splats of class E S+ D S+ L. Odd and even passes never mix.
+    /// Part three: what the eye paths of part one see, as splats of the class. Odd and even passes never mix.
     void resolve(std::uint32_t pass, std::vector<LightSplat>& splats);
 
     [[nodiscard]] std::size_t texels() const noexcept { return texels_.size() * 4; }
@@ -73,6 +74,7 @@ private:
     const Scene& scene_;
     const Camera& camera_;
     float width_;
+    PathString path_;
     std::unordered_map<Key, Texel, KeyHash> texels_;
     std::vector<Look> looks_;
     std::vector<std::array<double, 2>> seen_;  ///< by pixel: sums of luminance at h and extrapolated
