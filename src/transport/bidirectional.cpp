@@ -54,10 +54,8 @@ LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sample
         if (countsLamps()) sum.add(eye_.string(), eye_.emitted());
         const std::size_t depth = eye_.vertices().size(), limit = static_cast<std::size_t>(rules_.maxDepth);
         if (splitLampChains_ && eye_.deltaChain() && !lampsFollowed && (limit == 0 || depth <= limit)) {
-            EyeLedger ledger;
-            if (depth > 1) ledger.pass(kSpecular);
             lampsFollowed = lampChains_.follow({z.hit, z.bsdf, z.toPrevious, z.throughput, z.absorption,
-                                                eye_.etaScale(), ledger, static_cast<int>(depth)},
+                                                eye_.etaScale(), z.before, static_cast<int>(depth)},
                                                eye, sum);
         }
         eye.setDimension(dimension + kConnectChoice);

@@ -30,8 +30,8 @@ void LampChains::branchOff(const ChainVertex& vertex, const DeltaBranches& branc
         b.ray = Ray{offsetOrigin(vertex.hit.point.position, behind ? -ng : ng), way.wi,
                     std::numeric_limits<float>::infinity()};
         b.absorption = medium::afterHit(scene_, vertex.hit.point, vertex.bsdf, vertex.absorption, way.transmitted);
-        b.ledger = vertex.ledger;
-        b.ledger.pass(way.kind);
+        b.path = vertex.path;
+        b.path.pass(way.kind);
         b.vertices = vertex.vertices;
         waiting_.push_back(b);
     }
@@ -51,7 +51,7 @@ bool LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadi
         const auto hit = scene_.intersect(b.ray, scene_.hasHoles() ? sampler.next1D() : 0.0F);
         if (!hit) {
             if (const Environment* environment = scene_.environment())
-                sum.add(b.ledger.path(), b.throughput * environment->radiance(b.ray.direction));
+                sum.add(b.path, b.throughput * environment->radiance(b.ray.direction));
             continue;
         }
         const glm::vec3 wo = -b.ray.direction;
@@ -59,10 +59,10 @@ bool LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadi
         const Rgb absorption = medium::beforeHit(scene_, hit->point, bsdf, b.absorption);
         const Rgb throughput = b.throughput * medium::transmittance(absorption, hit->distance);
         const Rgb emitted = scene_.surfaces().emittedRadiance(hit->point, wo);
-        if (!isBlack(emitted)) sum.add(b.ledger.path(), throughput * emitted);
+        if (!isBlack(emitted)) sum.add(b.path, throughput * emitted);
         const int vertices = b.vertices + 1;
         if ((bsdf.kinds() & (kSpecular | kGlossy)) != kNoLobe && (maxDepth_ == 0 || vertices <= maxDepth_))
-            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.ledger, vertices},
+            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.path, vertices},
                       bsdf.deltaBranches(wo, TransportMode::Radiance), sampler);
     }
     return true;

@@ -147,9 +147,9 @@ bool Walk::step(State& state, Branches& branches, Sampler& sampler, FirstHit* fi
     const LobeKinds kinds = state.onlyChains ? bsdf.kinds() & kSpecular : bsdf.kinds();
     if (kinds == kNoLobe || (context_.options.maxDepth > 0 && state.vertices > context_.options.maxDepth)) return false;
     if (context_.options.splitLampChains && state.deltaChain && !state.gathering && !state.lampsFollowed)
-        state.lampsFollowed = lampChains_.follow(
-            {*hit, bsdf, wo, state.throughput, state.ray.absorption, state.etaScale, state.ledger, state.vertices},
-            sampler, state.radiance);
+        state.lampsFollowed = lampChains_.follow({*hit, bsdf, wo, state.throughput, state.ray.absorption,
+                                                  state.etaScale, state.ledger.path(), state.vertices},
+                                                 sampler, state.radiance);
     LobeKinds sampled = kinds & (kSpecular | kGlossy);
     LobeKinds direct = kinds;
     state.causticServed = state.chainsNext = state.sharedNext = false;

@@ -21,8 +21,8 @@ struct ChainVertex {
     Rgb throughput;  ///< up to the hit
     Rgb absorption;  ///< of the medium on wo's side
     float etaScale;
-    EyeLedger ledger;
-    int vertices;  ///< this one included
+    PathString path;  ///< the vertices before this one
+    int vertices;     ///< this one included
 };
 
 class LampChains {
@@ -41,7 +41,7 @@ private:
         Ray ray;
         Rgb throughput, absorption;
         float etaScale;
-        EyeLedger ledger;
+        PathString path;  ///< the vertices before this one
         int vertices;
     };
     void branchOff(const ChainVertex& vertex, const DeltaBranches& branches, Sampler& sampler);
