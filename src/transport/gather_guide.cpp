@@ -5,6 +5,7 @@
 
 #include <pellucid/math/constants.h>
 
+#include "packed_photon.h"
 #include "photon_tree.h"
 
 namespace pellucid {
@@ -14,28 +15,37 @@ namespace {
 constexpr int kNearest = 128;
 /// Fewer photons tell nothing.
 constexpr int kFewest = 16;
-/// A stratum is bright if so many more photons came through it than would of a uniform sky: of 128 strata one in five hundred
-/// gets rays that it does not need.
+/// A stratum gets more rays if so many more photons came through it than would on average.
 constexpr float kMoreThanChance = 1.0F;
 /// Photons on surfaces that face elsewhere are not asked.
 constexpr float kLeastCosine = 0.8F;
 
-[[nodiscard]] PhotonList otherPhotons(const std::vector<GlobalPhoton>& photons) {
-    PhotonList list;
+/// What is asked of a photon.
+struct Comer {
+    glm::vec3 position;
+    OctahedralVector wi, normal;
+    float flux;  ///< luminance
+};
+
+[[nodiscard]] std::vector<Comer> otherPhotons(const std::vector<GlobalPhoton>& photons) {
+    std::vector<Comer> list;
     for (const GlobalPhoton& p : photons)
-        if (p.arrived == Arrived::Otherwise) list.push_back(p.photon);
+        if (p.arrived == Arrived::Otherwise)
+            list.push_back({p.photon.position, OctahedralVector(p.photon.wi), OctahedralVector(p.photon.normal),
+                            luminance(p.photon.flux)});
     sortAlongMortonCurve(list);
     return list;
 }
 
 struct NearestOnSide : NearestHeap<kNearest> {
-    const PhotonList& photons;
+    const std::vector<Comer>& photons;
     glm::vec3 normal;
 
-    NearestOnSide(const PhotonList& list, const glm::vec3& side, float bound2)
+    NearestOnSide(const std::vector<Comer>& list, const glm::vec3& side, float bound2)
         : NearestHeap{kNearest, bound2}, photons(list), normal(side) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
-        if (distance2 < radius2 && glm::dot(photons[index].normal, normal) >= kLeastCosine) keep(distance2, index);
+        if (distance2 < radius2 && glm::dot(photons[index].normal.unit(), normal) >= kLeastCosine)
+            keep(distance2, index);
         return true;
     }
 };
@@ -51,8 +61,8 @@ std::size_t GatherStrata::containing(const glm::vec3& local) const noexcept {
 }
 
 struct GatherGuide::Impl {
-    PhotonList photons;
-    PointTree<Photon> tree;
+    std::vector<Comer> photons;
+    PointTree<Comer> tree;
     float farthest;
 
     Impl(const std::vector<GlobalPhoton>& list, float bound, const Workers& workers)
@@ -72,12 +82,11 @@ std::vector<std::uint8_t> GatherGuide::rays(const glm::vec3& position, const Fra
     std::vector<float> flux(strata.count(), 0.0F);
     float all = 0.0F;
     for (int i = 0; i < near.found; ++i) {
-        const Photon& photon = impl_->photons[near.heap[static_cast<std::size_t>(i)].second];
-        const glm::vec3 local = frame.toLocal(photon.wi);
+        const Comer& photon = impl_->photons[near.heap[static_cast<std::size_t>(i)].second];
+        const glm::vec3 local = frame.toLocal(photon.wi.unit());
         if (local.z <= 0.0F) continue;
-        const float y = luminance(photon.flux);
-        flux[strata.containing(local)] += y;
-        all += y;
+        flux[strata.containing(local)] += photon.flux;
+        all += photon.flux;
     }
     if (!(all > 0.0F)) return counts;
     const auto n = static_cast<float>(strata.count());

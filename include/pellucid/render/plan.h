@@ -55,7 +55,7 @@ struct Plan {
     bool bidirectional = false;    ///< eye paths meet light paths
     float texelWidth = 0.0F;       ///< of the texel irradiance, scene units; 0: off
     bool splitLampChains = false;  ///< lamps seen through smooth glass: both ways at each interface
-    bool splitGlass = false;       ///< and all else
+    bool splitGlass = false;       ///< all else that is seen through it, too
     bool adaptive = false;         ///< pixels take samples by their noise
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;

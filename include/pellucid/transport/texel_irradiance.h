@@ -1,8 +1,8 @@
-/// The reference for caustics that are themselves seen in a mirror or through glass, E S+ D S+ L, and for what caustics make in
-/// turn, E S+ D S+ D S+ L: light paths fill fine
-/// texels on the receivers in double precision, eye paths look through their S chain at them. Every light is seen, point
-/// lights too. Bias enters here, and only by the box of a texel, h^2 lap E / 24 to first order: each look-up is made at h
-/// and at h/2 and extrapolated, (4 E(h/2) - E(h)) / 3; what the extrapolation moved is the error bar.
+/// The reference for caustics that are themselves seen in a mirror or through glass, E S+ D S+ L, and for what those make in
+/// turn, E S+ D S+ D S+ L: light paths fill fine texels on the receivers in double precision, eye paths look through their S
+/// chain at them. Every light is seen, point lights too. Bias enters here, and only by the box of a texel, h^2 lap E / 24 to
+/// first order: each look-up is made at h and at h/2 and extrapolated, (4 E(h/2) - E(h)) / 3; what the extrapolation moved is
+/// the error bar.
 ///
 /// Texels are congruent parts of the triangles themselves, so that their areas are exact and no light is lost at an edge.
 /// Only those that an eye path has looked at are kept: each counts the passes since then.
