@@ -23,8 +23,13 @@ LightSide::LightSide(const PreparedView& view) : view_(view) {
 
 std::vector<LightSplat> LightSide::pass(PhotonSource& source, std::uint32_t iteration) {
     const StageTimer timer(stage_);
-    for (const auto& texels : {texels_.get(), bounced_.get()})
-        if (texels != nullptr) texels->look(view_.request.seed, iteration, view_.workers);
+    SeenReceivers seen;
+    if (texels_) {
+        seen = lookOverSpecular(view_.scene, view_.camera, view_.request.seed, iteration, view_.workers);
+        stage_.rays += seen.rays;
+        texels_->look(seen.places, iteration);
+        bounced_->look(seen.places, iteration);
+    }
     LightPass pass = traceLightPaths(view_.scene, view_.camera, source.guide(),
                                      {view_.request.seed, kLightPass + iteration, source.paths()}, view_.workers,
                                      texels_ ? &view_.survey.visible : nullptr);

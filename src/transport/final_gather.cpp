@@ -20,14 +20,6 @@ namespace {
 /// Of the least radius: distances below it count as this in the gradient.
 constexpr float kNearestShare = 0.05F;
 
-/// A point in the unit square of its stratum, as a direction of the frame's coordinates.
-[[nodiscard]] glm::vec3 directionIn(const GatherStrata& strata, int j, int k, const glm::vec2& within) noexcept {
-    const float sin2 = (static_cast<float>(j) + within.x) / static_cast<float>(strata.elevations);
-    const float phi = kTwoPi * (static_cast<float>(k) + within.y) / static_cast<float>(strata.azimuths);
-    const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(0.0F, 1.0F - sin2));
-    return {sine * std::cos(phi), sine * std::sin(phi), cosine};
-}
-
 /// The rays of one gather.
 struct GatherRays {
     Walk& walk;
@@ -38,7 +30,7 @@ struct GatherRays {
     /// What one of them finds: a direction of its stratum, the distance to what it hit and the radiance from there.
     [[nodiscard]] GatherCell trace(const GatherStrata& strata, int j, int k, Sampler sampler) const {
         GatherCell cell;
-        cell.direction = frame.toWorld(directionIn(strata, j, k, sampler.next2D()));
+        cell.direction = frame.toWorld(strata.direction(j, k, sampler.next2D()));
         cell.distance = std::numeric_limits<float>::infinity();
         // Below the true surface no light arrives, whatever the shading normal says.
         if (glm::dot(cell.direction, point.geometricNormal) <= 0.0F) return cell;

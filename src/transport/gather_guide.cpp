@@ -1,12 +1,10 @@
 #include <pellucid/transport/gather_guide.h>
 
 #include <algorithm>
-#include <cmath>
-
-#include <pellucid/math/constants.h>
 
 #include "packed_photon.h"
 #include "photon_tree.h"
+#include "radiance_point.h"
 
 namespace pellucid {
 
@@ -17,8 +15,6 @@ constexpr int kNearest = 128;
 constexpr int kFewest = 16;
 /// A stratum gets more rays if so many more photons came through it than would on average.
 constexpr float kMoreThanChance = 1.0F;
-/// Photons on surfaces that face elsewhere are not asked.
-constexpr float kLeastCosine = 0.8F;
 
 /// What is asked of a photon.
 struct Comer {
@@ -44,21 +40,13 @@ struct NearestOnSide : NearestHeap<kNearest> {
     NearestOnSide(const std::vector<Comer>& list, const glm::vec3& side, float bound2)
         : NearestHeap{kNearest, bound2}, photons(list), normal(side) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
-        if (distance2 < radius2 && glm::dot(photons[index].normal.unit(), normal) >= kLeastCosine)
+        if (distance2 < radius2 && glm::dot(photons[index].normal.unit(), normal) >= kMinNormalCosine)
             keep(distance2, index);
         return true;
     }
 };
 
 }  // namespace
-
-std::size_t GatherStrata::containing(const glm::vec3& local) const noexcept {
-    const float sin2 = local.x * local.x + local.y * local.y;
-    const float phi = std::atan2(local.y, local.x), turn = (phi < 0.0F ? phi + kTwoPi : phi) / kTwoPi;
-    const int j = std::min(elevations - 1, static_cast<int>(sin2 * static_cast<float>(elevations)));
-    const int k = std::min(azimuths - 1, static_cast<int>(turn * static_cast<float>(azimuths)));
-    return index(j, k);
-}
 
 struct GatherGuide::Impl {
     std::vector<Comer> photons;

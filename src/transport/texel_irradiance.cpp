@@ -2,20 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include <pellucid/math/constants.h>
-
-#include "medium.h"
 
 namespace pellucid {
 
 namespace {
 
-constexpr std::uint64_t kLookStream = 6ULL << 40U;
-constexpr std::size_t kPixelsPerChunk = 1024;
-constexpr int kLongestChain = 256;
-constexpr std::uint64_t kFirstDimension = 2, kDimensionsPerVertex = 5;
 constexpr double kMostParts = 1e4;
 constexpr std::size_t kBlock = 16;
 
@@ -41,68 +32,16 @@ TexelIrradiance::Place TexelIrradiance::placeOf(std::uint32_t geometry, std::uin
     return place;
 }
 
-/// Walks over S lobes; wherever the path stands at a D lobe after at least one of them, it looks. [algorithms: E S+ D]
-void TexelIrradiance::lookThrough(std::uint32_t pixel, Sampler& sampler, std::vector<Look>& looks,
-                                  std::uint64_t& rays) const {
-    const auto width = static_cast<std::uint32_t>(camera_.width());
-    const glm::vec2 corner(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
-    const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
-    Ray ray = camera_.ray(corner + jitter, lens).ray;
-    Rgb throughput(1.0F), absorption(0.0F);
-    float etaScale = 1.0F;
-    for (int vertex = 0; vertex < kLongestChain; ++vertex) {
-        sampler.setDimension(kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(vertex));
-        ++rays;
-        const auto hit = scene_.intersect(ray, sampler.next1D());
-        if (!hit) return;
-        const glm::vec3 wo = -ray.direction;
-        const Bsdf bsdf = scene_.surfaces().bsdf(hit->point, wo);
-        absorption = medium::beforeHit(scene_, hit->point, bsdf, absorption);
-        throughput *= medium::transmittance(absorption, hit->distance);
-        if (vertex > 0 && (bsdf.kinds() & kDiffuse) != kNoLobe) {
-            const DiffuseLobe& lobe = bsdf.diffuse();
-            const float towardsEye = std::min(1.0F, std::fabs(glm::dot(wo, bsdf.shadingNormal())));
-            looks.push_back(
-                {pixel, placeOf(hit->point.geometry, hit->point.primitive, hit->point.barycentric, bsdf.backSide()),
-                 throughput * lobe.reflectance * (kInvPi * lobe.transmittance(towardsEye)), lobe});
-        }
-        const float choose = sampler.next1D();
-        const auto next = bsdf.sample(wo, choose, sampler.next2D(), kSpecular, TransportMode::Radiance);
-        if (!next) return;
-        throughput *= next->weight;
-        etaScale *= next->etaScale;
-        const float survive = std::min(vertex > 64 ? 0.95F : 1.0F, maxComponent(throughput) * etaScale);
-        if (!(survive > 0.0F) || sampler.next1D() >= survive) return;
-        throughput /= survive;
-        absorption = medium::afterHit(scene_, hit->point, bsdf, absorption, next->transmitted);
-        const glm::vec3& n = bsdf.geometricNormal();
-        ray = Ray{offsetOrigin(hit->point.position, glm::dot(next->wi, n) < 0.0F ? -n : n), next->wi,
-                  std::numeric_limits<float>::infinity()};
-    }
-}
-
-void TexelIrradiance::look(std::uint64_t seed, std::uint32_t pass, const Workers& workers) {
-    const std::size_t pixels = static_cast<std::size_t>(camera_.width()) * static_cast<std::size_t>(camera_.height());
-    std::vector<std::vector<Look>> chunks((pixels + kPixelsPerChunk - 1) / kPixelsPerChunk);
-    std::vector<std::uint64_t> rays(chunks.size(), 0);
-    workers.forRanges(pixels, kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Sampler sampler(seed, kLookStream + i, pass);
-            lookThrough(static_cast<std::uint32_t>(i), sampler, chunks[begin / kPixelsPerChunk],
-                        rays[begin / kPixelsPerChunk]);
-        }
-    });
+void TexelIrradiance::look(const std::vector<SeenReceiver>& seen, std::uint32_t pass) {
+    seen_.resize(static_cast<std::size_t>(camera_.width()) * static_cast<std::size_t>(camera_.height()), {0.0, 0.0});
     looks_.clear();
-    seen_.resize(pixels, {0.0, 0.0});
-    for (std::size_t c = 0; c < chunks.size(); ++c) {
-        looks_.insert(looks_.end(), chunks[c].begin(), chunks[c].end());
-        rays_ += rays[c];
-    }
-    for (const Look& l : looks_) {
-        const auto [it, fresh] = texels_.try_emplace(l.place.key);
+    for (const SeenReceiver& s : seen) {
+        looks_.push_back({placeOf(s.geometry, s.primitive, s.barycentric, s.backSide), &s});
+        const Place& place = looks_.back().place;
+        const auto [it, fresh] = texels_.try_emplace(place.key);
         if (!fresh) continue;
         it->second.firstPass = pass;
-        it->second.area = l.place.area;
+        it->second.area = place.area;
     }
 }
 
@@ -123,13 +62,14 @@ void TexelIrradiance::deposit(const std::vector<CausticArrival>& arrivals, std::
 void TexelIrradiance::resolve(std::uint32_t pass, std::vector<LightSplat>& splats) {
     for (const Look& l : looks_) {
         const Texel& texel = texels_.find(l.place.key)->second;
+        const SeenReceiver& seen = *l.seen;
         // Passes of this parity from the texel's first one on, this one included.
         const double passes = (pass - texel.firstPass) / 2 + 1;
         const auto& quarters = texel.sum[pass & 1U];
         Rgb value(0.0F), coarse(0.0F);
         for (glm::length_t c = 0; c < 3; ++c) {
             const auto through = [&](const double* sum) {
-                return static_cast<double>(l.lobe.a) * sum[c] - static_cast<double>(l.lobe.b) * sum[3 + c];
+                return static_cast<double>(seen.lobe.a) * sum[c] - static_cast<double>(seen.lobe.b) * sum[3 + c];
             };
             double all = 0.0;
             for (const auto& q : quarters) all += through(q);
@@ -138,10 +78,10 @@ void TexelIrradiance::resolve(std::uint32_t pass, std::vector<LightSplat>& splat
             value[c] = static_cast<float>((4.0 * fine - wide) / 3.0);
             coarse[c] = static_cast<float>(wide);
         }
-        value *= l.weight;
-        seen_[l.pixel][0] += static_cast<double>(luminance(coarse * l.weight));
-        seen_[l.pixel][1] += static_cast<double>(luminance(value));
-        if (!isBlack(value)) splats.push_back({l.pixel, value, path_});
+        value *= seen.weight;
+        seen_[seen.pixel][0] += static_cast<double>(luminance(coarse * seen.weight));
+        seen_[seen.pixel][1] += static_cast<double>(luminance(value));
+        if (!isBlack(value)) splats.push_back({seen.pixel, value, path_});
     }
 }
 

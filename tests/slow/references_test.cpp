@@ -113,10 +113,7 @@ TEST_P(Ledger, PhotonsAgreeWithTheReferenceClassByClass) {
     Rendering reference{Method::Reference, 96, 6};
     reference.width = reference.height = 40;
     reference.layers = {"classes"};
-    Rendering photon = reference;
-    photon.method = Method::Photon;
-    photon.samples = 12;
-    photon.firstSeed = 900;
+    Rendering photon = reference.by(Method::Photon, 12, 900);
     expectSameEnergy(GetParam(), renderSeeds(scene, reference, workers), renderSeeds(scene, photon, workers));
 }
 

@@ -76,6 +76,15 @@ struct Rendering {
     int width = 32, height = 32;
     std::vector<std::string> layers = {};
     std::string camera = {};
+
+    /// The same image by another method and from other seeds on.
+    [[nodiscard]] Rendering by(Method other, std::uint32_t itsSamples, std::uint64_t itsFirstSeed) const {
+        Rendering r = *this;
+        r.method = other;
+        r.samples = itsSamples;
+        r.firstSeed = itsFirstSeed;
+        return r;
+    }
 };
 
 inline std::vector<Image> renderSeeds(const Scene& scene, const Rendering& what, const Workers& workers) {

@@ -31,10 +31,7 @@ TEST_P(Estimators, BidirectionalMeansWhatPathTracingMeans) {
     Rendering path{Method::Path, 64};
     path.settings = small.settings;
     path.width = path.height = 24;
-    Rendering bdpt = path;
-    bdpt.method = Method::Bdpt;
-    bdpt.samples = 32;
-    bdpt.firstSeed = 1000;
+    Rendering bdpt = path.by(Method::Bdpt, 32, 1000);
     const auto a = renderSeeds(scene, path, workers), b = renderSeeds(scene, bdpt, workers);
     for (const char* layer : {"", "emission", "direct", "caustic", "indirect"}) {
         const Agreement agreement = agreementOf(valuesOf(a, 2, layer), valuesOf(b, 2, layer));
@@ -56,10 +53,7 @@ TEST(Estimators, ResampledSkyMeansTheSkyOfPathTracing) {
         const Scene scene = made(small, workers);
         Rendering path{Method::Path, 64};
         path.width = path.height = 24;
-        Rendering photon = path;
-        photon.method = Method::Photon;
-        photon.samples = 32;
-        photon.firstSeed = 1000;
+        Rendering photon = path.by(Method::Photon, 32, 1000);
         photon.settings.globalPhotons = 5'000;
         const Agreement agreement = agreementOf(valuesOf(renderSeeds(scene, path, workers), 2, "direct"),
                                                 valuesOf(renderSeeds(scene, photon, workers), 2, "direct"));
@@ -221,10 +215,7 @@ TEST_P(ClassLedger, PhotonsCarryWhatBidirectionalPathsCarry) {
         Rendering reference{Method::Bdpt, 64, 6};
         reference.width = reference.height = 20;
         reference.layers = {"classes"};
-        Rendering photon = reference;
-        photon.method = Method::Photon;
-        photon.samples = 12;
-        photon.firstSeed = 700;
+        Rendering photon = reference.by(Method::Photon, 12, 700);
         photon.settings.globalPhotons = 30'000;
         photon.settings.gatherRays = 256;
         if (*GetParam().first != '\0') {
@@ -319,9 +310,7 @@ TEST(TexelIrradiance, CausticInAMirrorIsTheCausticSeenFromBehindIt) {
     Rendering light{Method::Light, 12, 6};
     light.width = light.height = 16;
     light.layers = {"classes"};
-    Rendering reference = light;
-    reference.method = Method::Reference;
-    reference.firstSeed = 60;
+    Rendering reference = light.by(Method::Reference, 12, 60);
     const SeedValues expected = valuesOf(renderSeeds(direct, light, workers), 4, "class.EDSL");
     SeedValues measured = valuesOf(renderSeeds(mirrored, reference, workers), 4, "class.ESDSL");
     for (auto& seed : measured)
@@ -346,10 +335,7 @@ TEST(TexelIrradiance, ReferenceMeansWhatPathTracingMeans) {
     Rendering path{Method::Path, 256, 6};
     path.width = path.height = 20;
     path.layers = {"classes"};
-    Rendering reference = path;
-    reference.method = Method::Reference;
-    reference.samples = 48;
-    reference.firstSeed = 300;
+    Rendering reference = path.by(Method::Reference, 48, 300);
     for (const GroupDifference& d : compareGroups(
              renderSeeds(scene, path, workers), renderSeeds(scene, reference, workers),
              [](const std::string& group) { return group == "ESDSL" ? 0.02 : 0.0; }, 0.0))
@@ -369,10 +355,7 @@ TEST(TexelIrradiance, CausticsOfCausticsAreThereToo) {
     Rendering path{Method::Path, 400, 6};
     path.width = path.height = 16;
     path.layers = {"classes"};
-    Rendering reference = path;
-    reference.method = Method::Reference;
-    reference.samples = 64;
-    reference.firstSeed = 300;
+    Rendering reference = path.by(Method::Reference, 64, 300);
     bool seen = false;
     for (const GroupDifference& d : compareGroups(
              renderSeeds(scene, path, workers), renderSeeds(scene, reference, workers),

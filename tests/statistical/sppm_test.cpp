@@ -31,10 +31,7 @@ TEST_P(Sppm, EveryClassHasItsEnergy) {
         Rendering reference{Method::Bdpt, 64, 6};
         reference.width = reference.height = 20;
         reference.layers = {"classes"};
-        Rendering sppm = reference;
-        sppm.method = Method::Sppm;
-        sppm.samples = 32;
-        sppm.firstSeed = 700;
+        Rendering sppm = reference.by(Method::Sppm, 32, 700);
         setParameter(sppm.settings, GetParam().first, GetParam().second);
         expectSameEnergy(small.name, renderSeeds(scene, reference, workers), renderSeeds(scene, sppm, workers));
     }

@@ -10,23 +10,10 @@
 
 #include <pellucid/base/parallel.h>
 #include <pellucid/math/frame.h>
+#include <pellucid/transport/gather_strata.h>
 #include <pellucid/transport/radiance_map.h>
 
 namespace pellucid {
-
-/// M x N strata of a hemisphere of equal cosine-weighted solid angle: sin^2 theta = (j + xi) / M, phi = 2 pi (k + xi) / N.
-struct GatherStrata {
-    int elevations = 0, azimuths = 0;
-
-    [[nodiscard]] std::size_t count() const noexcept {
-        return static_cast<std::size_t>(elevations) * static_cast<std::size_t>(azimuths);
-    }
-    [[nodiscard]] std::size_t index(int j, int k) const noexcept {
-        return static_cast<std::size_t>(k) * static_cast<std::size_t>(elevations) + static_cast<std::size_t>(j);
-    }
-    /// Of a unit direction over the horizon, in the frame's coordinates.
-    [[nodiscard]] std::size_t containing(const glm::vec3& local) const noexcept;
-};
 
 class GatherGuide {
 public:

@@ -13,10 +13,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include <pellucid/base/parallel.h>
 #include <pellucid/math/hash.h>
 #include <pellucid/scene/scene.h>
 #include <pellucid/transport/light_trace.h>
+#include <pellucid/transport/seen_receivers.h>
 
 namespace pellucid {
 
@@ -26,15 +26,14 @@ public:
     TexelIrradiance(const Scene& scene, const Camera& camera, float width, PathString path)
         : scene_(scene), camera_(camera), width_(width), path_(path) {}
 
-    /// One iteration, part one: an eye path a pixel over S lobes to a D vertex. Keeps the texels that they meet.
-    void look(std::uint64_t seed, std::uint32_t pass, const Workers& workers);
+    /// One iteration, part one: keeps the texels that eye paths look at. `seen` must outlive part three.
+    void look(const std::vector<SeenReceiver>& seen, std::uint32_t pass);
     /// Part two: the light of a pass that arrives over S lobes. In the order of the paths.
     void deposit(const std::vector<CausticArrival>& arrivals, std::uint32_t pass);
     /// Part three: what the eye paths of part one see, as splats of the class. Odd and even passes never mix.
     void resolve(std::uint32_t pass, std::vector<LightSplat>& splats);
 
     [[nodiscard]] std::size_t texels() const noexcept { return texels_.size() * 4; }
-    [[nodiscard]] std::uint64_t rays() const noexcept { return rays_; }
     /// Share by which extrapolation changed the class's energy, root mean square over blocks of 16 x 16 pixels.
     [[nodiscard]] double extrapolated() const noexcept;
 
@@ -62,14 +61,11 @@ private:
         double area = 0.0;
     };
     struct Look {
-        std::uint32_t pixel = 0;
         Place place;
-        Rgb weight{0.0F};  ///< throughput x rho / pi x T(wo)
-        DiffuseLobe lobe;
+        const SeenReceiver* seen = nullptr;
     };
     [[nodiscard]] Place placeOf(std::uint32_t geometry, std::uint32_t primitive, const glm::vec2& barycentric,
                                 bool back) const noexcept;
-    void lookThrough(std::uint32_t pixel, Sampler& sampler, std::vector<Look>& looks, std::uint64_t& rays) const;
 
     const Scene& scene_;
     const Camera& camera_;
@@ -78,7 +74,6 @@ private:
     std::unordered_map<Key, Texel, KeyHash> texels_;
     std::vector<Look> looks_;
     std::vector<std::array<double, 2>> seen_;  ///< by pixel: sums of luminance at h and extrapolated
-    std::uint64_t rays_ = 0;
 };
 
 }  // namespace pellucid
