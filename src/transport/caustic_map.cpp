@@ -32,6 +32,17 @@ struct Photons {
         for (const Photon& p : list) etendueDensity.push_back(p.etendueDensity);
     }
 
+    void putIn(const std::vector<std::uint32_t>& order) {
+        const auto put = [&order](auto& items) {
+            std::remove_reference_t<decltype(items)> moved;
+            moved.reserve(items.size());
+            for (const std::uint32_t i : order) moved.push_back(items[i]);
+            items = std::move(moved);
+        };
+        put(sites);
+        put(packed);
+        if (!etendueDensity.empty()) put(etendueDensity);
+    }
     [[nodiscard]] float density(std::uint32_t i) const noexcept {
         return etendueDensity.empty() ? common : etendueDensity[i];
     }
@@ -134,7 +145,10 @@ struct CausticMap::Impl {
     PointTree<PointSite> tree;
     std::unique_ptr<Marks> used;
     Impl(const PhotonList& list, PhotonKernel k, const Workers* workers)
-        : photons(list), kernel(k), tree(photons.sites, workers) {}
+        : photons(list), kernel(k), tree(photons.sites, workers) {
+        photons.putIn(tree.order());
+        tree.tellPlaces();
+    }
 };
 
 CausticMap::CausticMap(PhotonList photons, PhotonKernel kernel, const Workers* workers) {

@@ -1,10 +1,11 @@
-/// Photons in Morton order under a nanoflann kd-tree, searched by accumulating inside the result set: no list of
-/// neighbours is ever made. The rejects (side, plane distance) happen inside the search.
+/// Photons in Morton order under nanoflann's kd-trees, searched by accumulating inside the result set: no list of neighbours
+/// is ever made. The rejects (side, plane distance) happen inside the search.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -103,32 +104,43 @@ struct NearestHeap {
     }
 };
 
-/// A kd-tree over items with a `position`, which must stay where they are. With `workers` (null: one thread) many items get
-/// several trees, each over a stretch of their order, that are built at the same time: for items along the Morton curve few of
-/// them come near a point. How many depends on the number of items alone.
+/// A kd-tree over items with a `position`. With `workers` (null: one thread) many items get several trees, each over a stretch
+/// of their order, that are built at the same time: for items along the Morton curve few of them come near a point. How many
+/// depends on the number of items alone.
+///
+/// nanoflann builds the trees. The search over their nodes is our own: positions stand in the order of the leaves, axis by
+/// axis, so that a leaf's distances are a few vector instructions.
 template <class Item>
 class PointTree {
 public:
-    explicit PointTree(const std::vector<Item>& items, const Workers* workers = nullptr) {
+    explicit PointTree(const std::vector<Item>& items, const Workers* workers = nullptr)
+        : order_(items.size()), position_{padded(items.size()), padded(items.size()), padded(items.size())} {
         const std::size_t count =
             workers == nullptr ? 1 : std::clamp<std::size_t>(items.size() / kItemsPerPart, 1, kMostParts);
         for (std::size_t i = 0; i < count && !items.empty(); ++i)
             parts_.push_back(std::make_unique<Part>(items, items.size() * i / count, items.size() * (i + 1) / count));
         if (workers == nullptr)
-            for (const auto& part : parts_) part->build();
+            for (const auto& part : parts_) build(*part);
         else
-            workers->forEach(parts_.size(), 1, [&](std::size_t i) { parts_[i]->build(); });
+            workers->forEach(parts_.size(), 1, [&](std::size_t i) { build(*parts_[i]); });
     }
 
-    /// Runs the search of `result` (nanoflann's result-set interface: addPoint, worstDist, full, size, init).
+    /// Runs the search of `result` (nanoflann's result-set interface: addPoint, worstDist): nearer leaves first.
     template <class ResultSet>
     void search(const glm::vec3& point, ResultSet& result) const {
         for (const auto& part : parts_) {
-            if (parts_.size() > 1 && part->distance2(point) >= result.worstDist()) continue;
-            Shifted<ResultSet> shifted{result, static_cast<std::uint32_t>(part->adaptor.begin)};
-            part->tree.findNeighbors(shifted, &point.x, nanoflann::SearchParams(0, 0.0F, false));
+            const glm::vec3 away = glm::max(glm::max(part->bounds.lower - point, point - part->bounds.upper), 0.0F);
+            const glm::vec3 away2 = away * away;
+            const float distance2 = away2.x + away2.y + away2.z;
+            if (distance2 < result.worstDist())
+                visit(*part, part->tree.root_node, point, distance2, away2, result);
         }
     }
+
+    /// The numbers of the items in the order of the leaves.
+    [[nodiscard]] const std::vector<std::uint32_t>& order() const noexcept { return order_; }
+    /// From here on a search tells items by their place in that order, for who has put them so.
+    void tellPlaces() { order_ = {}; }
 
 private:
     static constexpr std::size_t kLeafSize = 16, kItemsPerPart = 1U << 15U, kMostParts = 16;
@@ -144,34 +156,73 @@ private:
             return false;
         }
     };
-    /// Numbers of a part as numbers of all items.
-    template <class ResultSet>
-    struct Shifted {
-        ResultSet& all;
-        std::uint32_t begin;
-        [[nodiscard]] std::size_t size() const noexcept { return all.size(); }
-        [[nodiscard]] bool full() const noexcept { return all.full(); }
-        [[nodiscard]] float worstDist() const noexcept { return all.worstDist(); }
-        bool addPoint(float distance2, std::uint32_t index) noexcept { return all.addPoint(distance2, begin + index); }
-    };
+    using Tree =
+        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t>;
+    using Node = typename Tree::Node;
     struct Part {
         Adaptor adaptor;
-        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t>
-            tree;
+        std::size_t begin;
+        Tree tree;
         Bounds bounds;
 
-        Part(const std::vector<Item>& items, std::size_t begin, std::size_t end)
-            : adaptor{items, begin, end}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
-        void build() {
-            tree.buildIndex();
-            for (std::size_t i = adaptor.begin; i < adaptor.end; ++i) bounds.extend(adaptor.items[i].position);
-        }
-        [[nodiscard]] float distance2(const glm::vec3& p) const noexcept {
-            const glm::vec3 away = glm::max(glm::max(bounds.lower - p, p - bounds.upper), glm::vec3(0.0F));
-            return glm::dot(away, away);
-        }
+        Part(const std::vector<Item>& items, std::size_t first, std::size_t end)
+            : adaptor{items, first, end},
+              begin(first),
+              tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
     };
+
+    /// A leaf is always read as a whole one.
+    [[nodiscard]] static std::vector<float> padded(std::size_t count) {
+        return std::vector<float>(count + kLeafSize, std::numeric_limits<float>::infinity());
+    }
+
+    void build(Part& part) {
+        part.tree.buildIndex();
+        for (std::size_t i = 0; i < part.tree.vAcc.size(); ++i) {
+            const std::size_t place = part.begin + i, number = part.begin + part.tree.vAcc[i];
+            const glm::vec3& p = part.adaptor.items[number].position;
+            part.bounds.extend(p);
+            order_[place] = static_cast<std::uint32_t>(number);
+            for (glm::length_t axis = 0; axis < 3; ++axis) position_[static_cast<std::size_t>(axis)][place] = p[axis];
+        }
+        part.tree.vAcc = {};
+    }
+
+    /// `away2`: squares of the distances to the node's box along the axes, their sum `distance2`. [AryaMount1993]
+    template <class ResultSet>
+    void visit(const Part& part, const Node* node, const glm::vec3& point, float distance2, glm::vec3 away2,
+               ResultSet& result) const {
+        while (node->child1 != nullptr) {
+            const auto& cut = node->node_type.sub;
+            const auto axis = static_cast<glm::length_t>(cut.divfeat);
+            const float fromLow = point[axis] - cut.divlow, fromHigh = point[axis] - cut.divhigh;
+            const bool low = fromLow + fromHigh < 0.0F;
+            visit(part, low ? node->child1 : node->child2, point, distance2, away2, result);
+            const float gap = low ? fromHigh : fromLow, gap2 = gap * gap;
+            distance2 += gap2 - away2[axis];
+            if (!(distance2 <= result.worstDist())) return;
+            away2[axis] = gap2;
+            node = low ? node->child2 : node->child1;
+        }
+        readLeaf(part.begin + node->node_type.lr.left, part.begin + node->node_type.lr.right, point, result);
+    }
+
+    template <class ResultSet>
+    void readLeaf(std::size_t begin, std::size_t end, const glm::vec3& point, ResultSet& result) const {
+        const float *x = &position_[0][begin], *y = &position_[1][begin], *z = &position_[2][begin];
+        std::array<float, kLeafSize> distance2;
+        for (std::size_t i = 0; i < kLeafSize; ++i) {
+            const float dx = point.x - x[i], dy = point.y - y[i], dz = point.z - z[i];
+            distance2[i] = dx * dx + dy * dy + dz * dz;
+        }
+        for (std::size_t i = 0; begin + i < end; ++i)
+            if (distance2[i] < result.worstDist())
+                result.addPoint(distance2[i], order_.empty() ? static_cast<std::uint32_t>(begin + i) : order_[begin + i]);
+    }
+
     std::vector<std::unique_ptr<Part>> parts_;
+    std::vector<std::uint32_t> order_;
+    std::array<std::vector<float>, 3> position_;  ///< by axis, in the order of the leaves
 };
 
 }  // namespace pellucid
