@@ -27,10 +27,13 @@ constexpr double kCacheShare = 0.7, kLaterCacheShare = 0.9;
 
 }  // namespace
 
-/// A number of photons that nobody asked for follows the clock and the memory, and the file holds its own.
+/// Sizes that nobody asked for follow the clock, the memory and the image, and the file holds its own.
 CacheKey fileKey(const PreparedView& view) {
     Settings settings = resolvedSettings(view.request.settings, view.plan);
-    settings.globalPhotons = view.request.settings.globalPhotons;
+    const Settings& asked = view.request.settings;
+    settings.globalPhotons = asked.globalPhotons;
+    settings.gatherRays = asked.gatherRays;
+    settings.cacheError = asked.cacheError;
     return cacheKey(view.scene, settings, view.plan.causticMap || view.plan.causticChains);
 }
 

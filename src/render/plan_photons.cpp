@@ -1,5 +1,6 @@
 // The plan's photons: a pilot finds where useful ones start, and each pass gets its size.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -39,6 +40,21 @@ constexpr double kOtherPathsPerPixel = 1.0;
 /// as measured on scenes under skies.
 constexpr std::size_t kEyePilotPixels = 2048;
 constexpr double kLeastIndirect = 0.08;
+
+/// A large image has time for few generations of records before its budget of time is over: its first one is finer, by up to so
+/// many times as many rays, from so many pixels on and so many seconds a pixel on. [docs/benchmarks.md]
+constexpr double kMostFiner = 2.0, kLargeImage = 131'072, kSecondsAPixel = 1.5e-5, kErrorOfRays = -0.25;
+
+void sizeFirstGeneration(Plan& plan, const Settings& asked, const Budget& budget, std::size_t pixels) {
+    const auto count = static_cast<double>(pixels);
+    const bool hurried = budget.seconds && *budget.seconds < kSecondsAPixel * count;
+    const double finer = hurried ? 1.0 : std::clamp(count / kLargeImage, 1.0, kMostFiner);
+    plan.gatherRays =
+        asked.gatherRays > 0 ? asked.gatherRays : static_cast<int>(finer * static_cast<double>(plan.gatherRays));
+    plan.cacheError = static_cast<float>(asked.cacheError > 0.0
+                                             ? asked.cacheError
+                                             : static_cast<double>(plan.cacheError) * std::pow(finer, kErrorOfRays));
+}
 
 [[nodiscard]] std::uint32_t withinShortBudget(double paths, const Budget& budget) {
     const double left = budget.seconds.value_or(kShortBudget) - budget.startedSecondsAgo;
@@ -191,8 +207,7 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
     plan.cacheMetric = s.cacheMetric == "ward"        ? CacheMetric::Ward
                        : s.cacheMetric == "tabellion" ? CacheMetric::Tabellion
                                                       : CacheMetric::Hessian;
-    if (s.cacheError > 0.0) plan.cacheError = static_cast<float>(s.cacheError);
-    if (s.gatherRays > 0) plan.gatherRays = s.gatherRays;
+    sizeFirstGeneration(plan, s, request.budget, seen.points.size());
     if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);
     if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
     const double receivers = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());

@@ -167,24 +167,24 @@ float LightChoice::flatShare(float flatSum, const glm::vec3& point, const glm::v
     return std::clamp(flatSum / (flatSum + treeSum), 0.2F, 0.8F);
 }
 
-std::optional<LightPick> LightChoice::choose(const glm::vec3& point, const glm::vec3& normal, float u) const noexcept {
+std::optional<LightPick> LightChoice::choose(const glm::vec3& point, const glm::vec3& normal, double u) const noexcept {
     const Weights weights = weigh(point, normal);
     const float share = flatShare(weights.sum, point, normal);
-    if (u >= share || !(weights.sum > 0.0F)) {
-        const double remapped =
-            (static_cast<double>(u) - static_cast<double>(share)) / (1.0 - static_cast<double>(share));
+    if (u >= static_cast<double>(share) || !(weights.sum > 0.0F)) {
+        const double remapped = (u - static_cast<double>(share)) / (1.0 - static_cast<double>(share));
         const auto choice = share < 1.0F ? tree_.choose(point, normal, std::max(0.0, remapped)) : std::nullopt;
         if (!choice) return std::nullopt;
-        return LightPick{choice->light, (1.0F - share) * static_cast<float>(choice->pmf)};
+        return LightPick{choice->light, (1.0F - share) * static_cast<float>(choice->pmf), choice->left};
     }
-    const float target = u / share;
-    float passed = 0.0F;
+    const double target = u / static_cast<double>(share);
+    double passed = 0.0;
     LightPick last;
     for (std::size_t i = 0; i < flat_.size(); ++i) {
         const float p = weights.probability(i < kFewLights ? weights.kept[i] : weight(flat_[i], point, normal));
         if (!(p > 0.0F)) continue;
-        last = {firstFlat_ + static_cast<std::uint32_t>(i), p * share};
-        passed += p;
+        const double mine = (target - passed) / static_cast<double>(p);
+        last = {firstFlat_ + static_cast<std::uint32_t>(i), p * share, std::clamp(mine, 0.0, kLargestBelowOne)};
+        passed += static_cast<double>(p);
         if (target < passed) break;
     }
     return last;

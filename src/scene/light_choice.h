@@ -24,7 +24,7 @@ public:
     /// `normal` zero: no horizon. A light that cannot reach the point (below the horizon, behind a one-sided lamp,
     /// outside of a cone) has probability 0, every other one a positive one.
     [[nodiscard]] std::optional<LightPick> choose(const glm::vec3& point, const glm::vec3& normal,
-                                                  float u) const noexcept;
+                                                  double u) const noexcept;
     [[nodiscard]] float pmf(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal) const noexcept;
 
 private:

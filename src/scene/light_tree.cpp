@@ -262,13 +262,13 @@ std::optional<LightTree::Choice> LightTree::choose(const glm::vec3& point, const
             at = at + 1;
         } else {
             const double rest = b / (a + b);
-            u = std::clamp((u - first) / rest, 0.0, 1.0 - 0x1p-53);
+            u = std::clamp((u - first) / rest, 0.0, kLargestBelowOne);
             pmf *= rest;
             at = nodes_[at].second;
         }
     }
     if (!(pmf > 0.0)) return std::nullopt;
-    return Choice{nodes_[at].second, pmf};
+    return Choice{nodes_[at].second, pmf, u};
 }
 
 double LightTree::pmf(std::uint32_t light, const glm::vec3& point, const glm::vec3& normal) const noexcept {

@@ -47,6 +47,7 @@ public:
     struct Choice {
         std::uint32_t light = 0;  ///< index into the lights given to the constructor
         double pmf = 0.0;
+        double left = 0.0;  ///< of its number, uniform again
     };
 
     LightTree() = default;

@@ -107,7 +107,7 @@ void Lights::Impl::towardsEnvironment(const glm::vec2& u, LightSample& sample) c
     sample.radiance = parts.environment->radiance(sample.wi);
 }
 
-std::optional<LightPick> Lights::choose(const glm::vec3& point, const glm::vec3& normal, float u) const noexcept {
+std::optional<LightPick> Lights::choose(const glm::vec3& point, const glm::vec3& normal, double u) const noexcept {
     return impl_->choice.choose(point, normal, u);
 }
 
@@ -128,10 +128,10 @@ std::optional<LightSample> Lights::sampleFrom(const LightPick& pick, const glm::
     return useful ? std::optional(sample) : std::nullopt;
 }
 
-std::optional<LightSample> Lights::sample(const glm::vec3& point, const glm::vec3& normal, float chooseLight,
+std::optional<LightSample> Lights::sample(const glm::vec3& point, const glm::vec3& normal, float fine,
                                           const glm::vec2& u) const noexcept {
-    const auto pick = choose(point, normal, chooseLight);
-    return pick ? sampleFrom(*pick, point, normal, u) : std::nullopt;
+    const auto pick = choose(point, normal, choiceNumber(fine, u));
+    return pick ? sampleFrom(*pick, point, normal, pointNumbers(*pick, u)) : std::nullopt;
 }
 
 std::optional<LightSample> Lights::towardsEnvironment(const LightPick& sky, const glm::vec3& normal,

@@ -118,7 +118,7 @@ std::vector<Finding> onTheWall(const CheckContext& context) {
         5.0 * meanOverSquare([&](double u, double v) {
             return polygonIrradiance(middle + kPatch * glm::dvec3(0, u - 0.5, v - 0.5), out, corners);
         });
-    return irradiance(context, b, expected, "irradiance of the wall");
+    return irradiance(context, b, expected, "irradiance of the wall", 0.02, 48);
 }
 
 std::vector<Finding> tenThousandLights(const CheckContext& context) {

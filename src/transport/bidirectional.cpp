@@ -59,10 +59,10 @@ LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sample
                                                eye, sum);
         }
         eye.setDimension(dimension + kConnectChoice);
-        const float choose = eye.next1D();
+        const float fine = eye.next1D();
         const glm::vec2 point = eye.next2D();
         if (z.bsdf.connects() && (limit == 0 || depth <= limit)) {
-            addDirect(z, choose, point, sum);
+            addDirect(z, fine, point, sum);
             for (std::size_t i = 0; i < light_.vertices().size(); ++i)
                 if (limit == 0 || depth + i + 1 <= limit) connect(z, i, sum);
         }
@@ -136,9 +136,9 @@ void Bidirectional::splat(const PathVertex& y, std::size_t index, const glm::vec
 }
 
 /// Next-event estimation: the light path is a point on a light, drawn for this vertex.
-void Bidirectional::addDirect(const PathVertex& z, float choose, const glm::vec2& u, LayeredRadiance& sum) noexcept {
+void Bidirectional::addDirect(const PathVertex& z, float fine, const glm::vec2& u, LayeredRadiance& sum) noexcept {
     const Lights& lights = scene_.lights();
-    const auto light = lights.sample(z.hit.point.position, z.horizon, choose, u);
+    const auto light = lights.sample(z.hit.point.position, z.horizon, fine, u);
     if (!light) return;
     const auto value = eye_.valueTowards(z, light->wi);
     if (!value) return;

@@ -132,8 +132,7 @@ public:
             const glm::vec3 away = glm::max(glm::max(part->bounds.lower - point, point - part->bounds.upper), 0.0F);
             const glm::vec3 away2 = away * away;
             const float distance2 = away2.x + away2.y + away2.z;
-            if (distance2 < result.worstDist())
-                visit(*part, part->tree.root_node, point, distance2, away2, result);
+            if (distance2 < result.worstDist()) visit(*part, part->tree.root_node, point, distance2, away2, result);
         }
     }
 
@@ -217,7 +216,8 @@ private:
         }
         for (std::size_t i = 0; begin + i < end; ++i)
             if (distance2[i] < result.worstDist())
-                result.addPoint(distance2[i], order_.empty() ? static_cast<std::uint32_t>(begin + i) : order_[begin + i]);
+                result.addPoint(distance2[i],
+                                order_.empty() ? static_cast<std::uint32_t>(begin + i) : order_[begin + i]);
     }
 
     std::vector<std::unique_ptr<Part>> parts_;

@@ -131,8 +131,8 @@ Rgb directIrradiance(const Scene& scene, const RadiancePoint& p, const RadianceM
     Rgb sum(0.0F);
     for (int s = 0; s < options.lampSamples; ++s) {
         Sampler sampler(options.seed, index, static_cast<std::uint32_t>(s));
-        const float choice = sampler.next1D();
-        const auto light = scene.lights().sample(p.position, p.normal, choice, sampler.next2D());
+        const float fine = sampler.next1D();
+        const auto light = scene.lights().sample(p.position, p.normal, fine, sampler.next2D());
         if (!light || !(light->pdfSolidAngle > 0.0F)) continue;
         const float cosine = glm::dot(light->wi, p.shadingNormal);
         if (cosine <= 0.0F || glm::dot(light->wi, p.normal) <= 0.0F) continue;

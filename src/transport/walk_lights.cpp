@@ -145,12 +145,13 @@ bool Walk::resampleEnvironment(const Vertex& vertex, LobeKinds kinds, LobeKinds 
 /// Next-event estimation for `kinds`; those that are also `sampled` share the class with sampling by MIS.
 void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
                      Sampler& sampler) noexcept {
-    const float choice = sampler.next1D();
-    const glm::vec2 u = sampler.next2D();
+    const float fine = sampler.next1D();
+    const glm::vec2 numbers = sampler.next2D();
     const glm::vec3& position = vertex.hit.point.position;
     const Lights& lights = context_.scene.lights();
-    const auto pick = lights.choose(position, vertex.lightNormal, choice);
+    const auto pick = lights.choose(position, vertex.lightNormal, Lights::choiceNumber(fine, numbers));
     if (!pick) return;
+    const glm::vec2 u = Lights::pointNumbers(*pick, numbers);
     LightSample light;
     std::array<Rgb, 3> lobes;
     if ((kinds & ~static_cast<unsigned>(sampled) & kDiffuse) != 0U &&

@@ -18,6 +18,7 @@
 #include "../../src/render/point_cloud.h"
 #include "../support/files.h"
 #include "../support/same_bits.h"
+#include "agreement.h"
 #include "small_scenes.h"
 
 namespace pellucid {
@@ -115,6 +116,25 @@ TEST_F(Views, TheSameViewFromItsFileHasTheSameBits) {
     EXPECT_EQ(stage(again.record, "global photons").rays, 0U);
 }
 
+/// The noise of 20,000 photons and of a record's gather rays makes 1.5 % a seed.
+TEST_F(Views, AMovedCameraSeesTheSameLight) {
+    std::vector<double> known, own;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const auto seen = [&](const char* camera, const std::string& file) {
+            RenderRequest request = smallRequest(camera);
+            request.seed = seed;
+            return mean(renderWith(request, file).image, "indirect.G");
+        };
+        const std::string file = "cache " + std::to_string(seed);
+        (void)seen("camera 1", file);
+        known.push_back(seen("camera 2", file));
+        own.push_back(seen("camera 2", ""));
+    }
+    const testing::MeanOfSeeds a = testing::meanOfSeeds(known), b = testing::meanOfSeeds(own);
+    EXPECT_GT(testing::welch(a, b), testing::sidakLevel(1)) << a.mean << " for " << b.mean;
+    EXPECT_LT(std::sqrt(a.variance + b.variance), 0.015 * b.mean) << "tells a loss";
+}
+
 TEST_F(Views, AMovedCameraAddsOnlyWhatItLacks) {
     const RenderResult first = renderWith(smallRequest("camera 1"), "cache");
     fs::copy_file(path("cache"), path("for one thread"));
@@ -124,8 +144,6 @@ TEST_F(Views, AMovedCameraAddsOnlyWhatItLacks) {
     EXPECT_LT(gathered, 0.4 * static_cast<double>(stage(fresh.record, "irradiance cache").rays));
     EXPECT_EQ(moved.record.reuse.recordsReused, first.record.reuse.recordsNew);
     EXPECT_GT(moved.record.reuse.recordsNew, 0U);
-    // The same light: to the noise of a record's 128 gather rays, over some hundred records.
-    EXPECT_NEAR(mean(moved.image, "indirect.G") / mean(fresh.image, "indirect.G"), 1.0, 0.02);
     // The file knows both views now.
     const RenderResult back = renderWith(smallRequest("camera 2"), "cache");
     EXPECT_EQ(back.record.reuse.recordsNew, 0U);
@@ -164,7 +182,7 @@ TEST_F(Views, AStaleFileIsRefusedWithTheReason) {
     (void)renderWith(smallRequest("camera 1", 1), "cache");
     RenderRequest other = smallRequest("camera 1", 1);
     other.settings.gatherRays = 200;
-    EXPECT_NE(refusal(scene_, other, "cache").find("cache.rays=128 there, 200 here"), std::string::npos)
+    EXPECT_NE(refusal(scene_, other, "cache").find("cache.rays=auto there, 200 here"), std::string::npos)
         << refusal(scene_, other, "cache");
     other = smallRequest("camera 1", 1);
     other.settings.maxDepth = 3;

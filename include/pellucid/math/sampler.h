@@ -40,6 +40,13 @@ public:
         return toFloat(reverse(laineKarras(index, low)));
     }
 
+    /// The `part`-th of `parts` that this sample splits into: together they are the sequence's next ones in every dimension.
+    [[nodiscard]] Sampler split(std::uint32_t part, std::uint32_t parts) const noexcept {
+        Sampler one = *this;
+        one.index_ = index_ * parts + part;
+        return one;
+    }
+
     /// Goes to a fixed dimension, so that a decision keeps its numbers whatever was drawn before it.
     void setDimension(std::uint64_t dimension) noexcept { dimension_ = dimension; }
 

@@ -2,6 +2,7 @@
 /// estimation), its density for a light that was hit (multiple importance sampling), and emission of photons.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include <glm/glm.hpp>
 
+#include <pellucid/math/constants.h>
 #include <pellucid/math/ray.h>
 #include <pellucid/math/rgb.h>
 #include <pellucid/scene/environment.h>
@@ -47,6 +49,7 @@ enum class LightKind : std::uint8_t { Point, Spot, Directional, Triangle, Enviro
 struct LightPick {
     std::uint32_t light = 0;
     float pmf = 0.0F;
+    double left = 0.0;  ///< what the choice has left of its number: uniform in [0,1) again
 };
 
 /// A light seen from a shading point. The estimate is f |cos| * radiance / pdfSolidAngle, for delta lights too.
@@ -117,13 +120,21 @@ public:
     /// One light and a point on it, seen from `point` with normal `normal` (zero vector: no surface, no horizon).
     /// Among few lights the choice follows an estimate of what each sends to the point, among many a light tree
     /// (bounds, strength, orientation); a light that cannot reach the point has no share. Empty: black or below the
-    /// horizon.
-    [[nodiscard]] std::optional<LightSample> sample(const glm::vec3& point, const glm::vec3& normal, float chooseLight,
+    /// horizon. The choice takes the first number of `u` and leaves what it did not need of it for the point, so that well
+    /// spread points stay so over lamps of several triangles; `fine` continues that number beyond the digits of a float.
+    [[nodiscard]] std::optional<LightSample> sample(const glm::vec3& point, const glm::vec3& normal, float fine,
                                                     const glm::vec2& u) const noexcept;
 
     /// sample() in two steps: the choice, then a point on that light.
     [[nodiscard]] std::optional<LightPick> choose(const glm::vec3& point, const glm::vec3& normal,
-                                                  float u) const noexcept;
+                                                  double u) const noexcept;
+    /// The number that a choice takes, and the point's numbers after it.
+    [[nodiscard]] static double choiceNumber(float fine, const glm::vec2& u) noexcept {
+        return static_cast<double>(u.x) + static_cast<double>(fine) * 0x1p-24;
+    }
+    [[nodiscard]] static glm::vec2 pointNumbers(const LightPick& pick, const glm::vec2& u) noexcept {
+        return {std::min(static_cast<float>(pick.left), kOneMinusEpsilon), u.y};
+    }
     [[nodiscard]] std::optional<LightSample> sampleFrom(const LightPick& pick, const glm::vec3& point,
                                                         const glm::vec3& normal, const glm::vec2& u) const noexcept;
 

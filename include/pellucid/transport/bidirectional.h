@@ -32,7 +32,7 @@ public:
 private:
     void traceLight(Sampler& sampler, std::vector<LightSplat>& splats) noexcept;
     void splat(const PathVertex& y, std::size_t index, const glm::vec2& lens, std::vector<LightSplat>& splats) noexcept;
-    void addDirect(const PathVertex& z, float choose, const glm::vec2& u, LayeredRadiance& sum) noexcept;
+    void addDirect(const PathVertex& z, float fine, const glm::vec2& u, LayeredRadiance& sum) noexcept;
     void connect(const PathVertex& z, std::size_t lightVertex, LayeredRadiance& sum) noexcept;
     [[nodiscard]] Rgb transmittance(const PathVertex& from, const glm::vec3& direction, const Ray& shadow,
                                     float distance) noexcept;
