@@ -196,7 +196,7 @@ bool Search::prune(SearchOutcome& outcome) {
     const auto last = static_cast<std::size_t>(kLevels - 1);
     for (const auto& [expected, name] : order) {
         Candidate without = winner.candidate;
-        std::erase_if(without.set, [&](const auto& setting) { return setting.first == name; });
+        std::erase_if(without.set, [&name = name](const auto& setting) { return setting.first == name; });
         if (request_.iterations == 0 && runner_.spent() > limit_ + kPruneShare * request_.budget) break;
         tellStage("what " + name + " is worth");
         const std::optional<double> value = score(without, kLevels - 1);
