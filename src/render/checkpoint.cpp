@@ -8,7 +8,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCheckpoint{"pellucid checkpoint 6\n", "the checkpoint", "delete it and render from the start"};
+constexpr SealedKind kCheckpoint{"pellucid checkpoint 7\n", "the checkpoint", "delete it and render from the start"};
 
 }  // namespace
 
@@ -34,7 +34,8 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     body.put(state.causticPaths);
     body.put(state.causticRays);
     body.put(state.causticEmitted);
-    for (const std::vector<char>* block : {&state.film, &state.training, &state.radii, &state.shrunk, &state.others})
+    for (const std::vector<char>* block :
+         {&state.film, &state.training, &state.radii, &state.shrunk, &state.others, &state.penumbrae})
         body.putBlock(*block);
     writeSealed(file, kCheckpoint, body.bytes());
 }
@@ -55,7 +56,8 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     state.causticPaths = reader.get<std::uint32_t>();
     state.causticRays = reader.get<std::uint64_t>();
     state.causticEmitted = reader.get<std::uint64_t>();
-    for (std::vector<char>* block : {&state.film, &state.training, &state.radii, &state.shrunk, &state.others})
+    for (std::vector<char>* block :
+         {&state.film, &state.training, &state.radii, &state.shrunk, &state.others, &state.penumbrae})
         *block = reader.getBlock<std::vector<char>>();
     if (!reader.good()) refuseDamaged(file, kCheckpoint);
     return state;

@@ -28,6 +28,7 @@ struct CheckpointState {
     std::uint32_t causticPaths = 0;                     ///< of an iteration to come
     std::uint64_t causticRays = 0, causticEmitted = 0;  ///< of all caustic passes so far
     std::vector<char> shrunk, others;  ///< radii by what each pixel has met: of the caustics, and others
+    std::vector<char> penumbrae;       ///< where shadow rays differ
 };
 
 /// The bytes of a checkpoint's file around its body: what it is, and the checksum. (Apart so that the fuzzer can seal bodies.)

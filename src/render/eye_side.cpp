@@ -50,23 +50,25 @@ PixelKernels EyeSide::kernelsAt(const PhotonSides& photons, PixelAt at) const {
 }
 
 LayeredRadiance EyeSide::sample(Walk& walk, const Film& film, const PixelKernels& kernels, PixelAt at, int number,
-                                FirstHit& first, StringSums* strings) const {
+                                FirstHit& first, StringSums* strings, ShadowTally* shadows) const {
     const std::size_t pixel = view_.pixelIndex(at.x, at.y);
     const std::uint32_t before = view_.plan.adaptive ? film.taken(pixel) : film.samples();
     Sampler sampler(view_.request.seed, pixel, before + static_cast<std::uint32_t>(number),
                     samplerKind(view_.request.settings.sampler));
     const glm::vec2 jitter = sampler.next2D(), lens = sampler.next2D();
     const CameraRay ray = view_.camera.ray(cornerOf(at) + jitter, lens);
+    walk.sampleLamps(penumbrae_.lampSamples(at.x, at.y), shadows);
     return walk.fromEye({ray.ray, ray.footprintAtOrigin, ray.footprintSpread, Rgb(0.0F), kernels}, sampler, &first,
                         strings);
 }
 
-void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonSides& photons, Film& film) const {
+void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonSides& photons, Film& film) {
     const std::size_t pixel = view_.pixelIndex(at.x, at.y);
     const std::uint64_t before = walk.rays();
     const int share = film.share(pixel);
     LayeredRadiance sum;
     FirstHit firsts;
+    ShadowTally shadows;
     strings.ofPixel.clear();
     if (film.keepsStrings()) sum.strings = &strings.ofPixel;
     const PixelKernels kernels = kernelsAt(photons, at);
@@ -78,13 +80,14 @@ void EyeSide::addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonS
         walk.tallyTo(counts ? &tally : nullptr);
         strings.ofSample.clear();
         const LayeredRadiance radiance =
-            sample(walk, film, kernels, at, k, first, film.keepsStrings() ? &strings.ofSample : nullptr);
+            sample(walk, film, kernels, at, k, first, film.keepsStrings() ? &strings.ofSample : nullptr, &shadows);
         if (counts) photons.caustics.met(pixel, tally.caustic), photons.others.met(pixel, tally.other);
         if (!film.admit(pixel, film.samples(), radiance)) continue;
         sum.addShare(radiance, 1.0F / static_cast<float>(share));
         firsts.addShare(first, 1.0F / static_cast<float>(share));
     }
     film.add(pixel, film.samples(), sum, firsts, share, walk.rays() - before);
+    if (view_.plan.cache || view_.plan.otherPhotons) penumbrae_.met(at.x, at.y, shadows);
 }
 
 std::uint64_t EyeSide::pass(const TransportContext& context, const PhotonSides& photons, Film& film,

@@ -10,7 +10,9 @@
 #include <pellucid/transport/walk.h>
 
 #include "caustic_side.h"
+#include "checkpoint.h"
 #include "other_side.h"
+#include "penumbrae.h"
 #include "prepared_view.h"
 #include "stages.h"
 
@@ -28,7 +30,7 @@ struct PhotonSides {
 
 class EyeSide {
 public:
-    explicit EyeSide(const PreparedView& view) noexcept : view_(view) {}
+    explicit EyeSide(const PreparedView& view) : view_(view), penumbrae_(view.camera.width(), view.camera.height()) {}
 
     /// Whether the samples are shared out anew after so many iterations: after 2, 4, 8, ...
     [[nodiscard]] bool renewsShares(std::uint32_t samples) const noexcept;
@@ -46,7 +48,8 @@ public:
     /// Sample `number` of a pixel in this iteration: keyed by seed, pixel and how many went before, whatever was sampled
     /// elsewhere.
     [[nodiscard]] LayeredRadiance sample(Walk& walk, const Film& film, const PixelKernels& kernels, PixelAt at,
-                                         int number, FirstHit& first, StringSums* strings = nullptr) const;
+                                         int number, FirstHit& first, StringSums* strings = nullptr,
+                                         ShadowTally* shadows = nullptr) const;
     /// The same, with a light path of its own number beside the eye path.
     [[nodiscard]] LayeredRadiance sample(Bidirectional& paths, const Film& film, PixelAt at,
                                          std::vector<LightSplat>& splats, FirstHit& first,
@@ -54,6 +57,9 @@ public:
     [[nodiscard]] Bidirectional bidirectional() const noexcept;
 
     [[nodiscard]] const StageRecord& stage() const noexcept { return stage_; }
+
+    void saveTo(CheckpointState& state) const { state.penumbrae = penumbrae_.save(); }
+    [[nodiscard]] bool restoreFrom(const CheckpointState& state) { return penumbrae_.restore(state.penumbrae); }
 
 private:
     /// Calls body(tile, pixels of the tile as callback) in parallel.
@@ -64,9 +70,10 @@ private:
         StringSums ofPixel, ofSample;
     };
     /// All samples of one pixel in this iteration.
-    void addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonSides& photons, Film& film) const;
+    void addSamples(Walk& walk, Strings& strings, PixelAt at, const PhotonSides& photons, Film& film);
 
     const PreparedView& view_;
+    Penumbrae penumbrae_;  ///< where maps serve receivers
     StageRecord stage_{"eye pass"};
 };
 

@@ -163,6 +163,7 @@ void Renderer::save() const {
     source_.saveTo(state);
     caustics_.saveTo(state);
     others_.saveTo(state);
+    eyes_.saveTo(state);
     indirect_.saveTo(state);
     writeCheckpoint(view_.request.checkpoint, checkpointKey(view_.scene, view_.request, view_.camera), state);
 }
@@ -180,7 +181,7 @@ void Renderer::resume() {
         readCheckpoint(view_.request.checkpoint, checkpointKey(view_.scene, view_.request, view_.camera));
     if (!state) return;
     if (!film_.restore(state->film) || !source_.restoreFrom(*state) || !caustics_.restoreFrom(*state) ||
-        !others_.restoreFrom(*state))
+        !others_.restoreFrom(*state) || !eyes_.restoreFrom(*state))
         throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", view_.request.checkpoint.string(),
                     "delete it or render without --resume");
     indirect_.restoreFrom(*state, caustics_.maps(source_), clock_, progress_);

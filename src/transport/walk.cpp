@@ -167,7 +167,11 @@ bool Walk::step(State& state, Branches& branches, Sampler& sampler, FirstHit* fi
     if (context_.options.lights == LightStrategy::Chance)
         direct = static_cast<LobeKinds>(direct & ~static_cast<unsigned>(sampled));
     sampler.setDimension(dimension + kLightChoice);
-    if (direct != kNoLobe) addDirect(state, vertex, direct, sampled, sampler);
+    const bool served = !state.gathering && (direct & ~static_cast<unsigned>(sampled) & kDiffuse) != 0U;
+    if (direct != kNoLobe && served)
+        addSplitDirect(state, vertex, direct, sampled, sampler);
+    else if (direct != kNoLobe)
+        addDirect(state, vertex, direct, sampled, sampler);
     if (sampled == kNoLobe) return false;
     sampler.setDimension(dimension + kLobeChoice);
     if (sampled == kSpecular && splits(state) && split(state, vertex, sampler, branches)) return false;

@@ -142,6 +142,18 @@ bool Walk::resampleEnvironment(const Vertex& vertex, LobeKinds kinds, LobeKinds 
     return true;
 }
 
+/// At a receiver whose other light the maps serve: as many samples as are asked for, which share its weight.
+void Walk::addSplitDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
+                          const Sampler& sampler) noexcept {
+    const Rgb whole = state.throughput;
+    state.throughput /= static_cast<float>(lampSamples_);
+    for (int i = 0; i < lampSamples_; ++i) {
+        Sampler part = sampler.split(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(lampSamples_));
+        addDirect(state, vertex, kinds, sampled, part);
+    }
+    state.throughput = whole;
+}
+
 /// Next-event estimation for `kinds`; those that are also `sampled` share the class with sampling by MIS.
 void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
                      Sampler& sampler) noexcept {
@@ -168,6 +180,8 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     const Ray shadow = shadowRay(position, glm::dot(light.wi, ng) >= 0.0F ? ng : -ng, light.wi, light.distance);
     ++rays_;
     const float visible = shadow.tMax > 0.0F ? context_.scene.visibility(shadow) : 1.0F;
+    if (shadows_ != nullptr && !state.gathering && !light.delta)
+        (visible > 0.0F ? shadows_->seen : shadows_->hidden) = true;
     if (visible <= 0.0F) return;
     Rgb arriving = light.radiance * (visible / light.pdfSolidAngle);
     const bool through = glm::dot(light.wi, ng) < 0.0F;

@@ -70,6 +70,26 @@ TEST(EyeSamples, SplitLampChainsTameGlints) {
               0.5 * variance(renderSeeds(scene, plain, workers), "emission"));
 }
 
+/// A board between a floor and a wide lamp, in a corner whose other light the maps serve: path tracing by next-event estimation
+/// alone has one shadow ray a sample, photon mapping from the second iteration on several where they differ.
+TEST(EyeSamples, PenumbraeTakeMoreShadowRaysAndMeanTheSame) {
+    check::SceneBuilder b;
+    detail::addCorner(b, detail::coloured({0.5F, 0.5F, 0.5F}), detail::coloured({0.4F, 0.5F, 0.6F}));
+    b.box({-0.4, 0.8, -0.4}, {0.4, 0.85, 0.4}, detail::coloured({0.5F, 0.5F, 0.5F}));
+    b.square({0.0, 2.2, 0.0}, {0, -1, 0}, 0.5, check::lamp(10.0F));
+    const Workers workers;
+    const Scene scene(b.description(), std::nullopt, SceneOptions{}, workers);
+    Rendering path{Method::Path, 12, 16};
+    path.width = path.height = 24;
+    path.settings = with({}, "path.lights", "nee");
+    Rendering photon = path.by(Method::Photon, 12, 1000);
+    photon.settings = with(with(with({}, "cache.mode", "on"), "photon.global", "5000"), "path.adaptive", "off");
+    const auto one = renderSeeds(scene, path, workers), several = renderSeeds(scene, photon, workers);
+    const Agreement agreement = agreementOf(valuesOf(one, 4, "direct"), valuesOf(several, 4, "direct"));
+    EXPECT_TRUE(agreement.holds(sidakLevel(3))) << agreement;
+    EXPECT_LT(variance(several, "direct"), 0.6 * variance(one, "direct"));
+}
+
 /// A pane before a bright wall that mirrors the dark: one look in twenty found nothing.
 TEST(EyeSamples, BothWaysAtGlassTakeItsNoise) {
     const Workers workers;

@@ -79,6 +79,11 @@ struct FirstHit {
     }
 };
 
+/// What shadow rays to lamps that have an extent met.
+struct ShadowTally {
+    bool seen = false, hidden = false;
+};
+
 /// A D vertex where the eye path ends: where the cache wants a record, a photon is useful.
 struct GatherPoint {
     bool valid = false;
@@ -131,6 +136,10 @@ public:
     /// From now on what look-ups of photons meet is added there (null: no longer).
     void tallyTo(PhotonTally* tally) noexcept { tally_ = tally; }
 
+    /// From now on receivers whose other light the maps serve sample the lamps so many times; what the shadow rays meet is
+    /// told there (null: nobody asks).
+    void sampleLamps(int times, ShadowTally* shadows) noexcept { lampSamples_ = times, shadows_ = shadows; }
+
     [[nodiscard]] std::uint64_t rays() const noexcept { return rays_ + lampChains_.rays(); }
     [[nodiscard]] std::uint64_t cacheMisses() const noexcept { return cacheMisses_; }
 
@@ -156,6 +165,8 @@ private:
                                            const LightPick& sky, const glm::vec2& u, Sampler& sampler,
                                            LightSample& seen, std::array<Rgb, 3>& lobes) const noexcept;
     void addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept;
+    void addSplitDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
+                        const Sampler& sampler) noexcept;
     [[nodiscard]] bool scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] float misWeight(float mine, float other) const noexcept;
     /// Of a lamp that a sampled direction met; `pdfLight`: that of next-event estimation.
@@ -173,6 +184,8 @@ private:
     LampChains lampChains_;
     WalkTrace* trace_ = nullptr;
     PhotonTally* tally_ = nullptr;
+    int lampSamples_ = 1;
+    ShadowTally* shadows_ = nullptr;
     std::uint64_t rays_ = 0, cacheMisses_ = 0;
 };
 
