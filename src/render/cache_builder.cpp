@@ -89,8 +89,9 @@ private:
 
 /// Of the misses, in order, those that no earlier one is sure to cover: every record speaks as far as its least radius.
 [[nodiscard]] std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& misses, const Survey& seen,
-                                                 const Bounds& bounds, const Plan& plan, float error) {
-    IrradianceCache sure(bounds, error, plan.cacheMetric);
+                                                 const Bounds& bounds, CacheMetric metric, const GenerationSize& size) {
+    const float error = size.cacheError;
+    IrradianceCache sure(bounds, error, metric);
     std::vector<std::uint32_t> kept;
     for (const std::uint32_t pixel : misses) {
         const GatherPoint& p = seen.points[pixel];
@@ -99,7 +100,7 @@ private:
         IrradianceRecord record;
         record.position = p.position;
         record.normal = p.unmappedNormal;
-        record.radius = plan.minSpacing * p.footprint / error;
+        record.radius = size.minSpacing * p.footprint / error;
         if (record.radius > 0.0F) sure.adopt(record, record.radius * error);
     }
     return kept;
@@ -136,7 +137,7 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
             for (std::size_t i = 0; i < missed.size(); ++i)
                 if (missed[i] != 0) misses.push_back(round[done + i]);
             const std::size_t missing = misses.size();
-            misses = thinned(misses, seen, context.scene.bounds(), plan, error);
+            misses = thinned(misses, seen, context.scene.bounds(), plan.cacheMetric, size);
             std::vector<IrradianceRecord> records(misses.size());
             std::vector<LightByDirection> lights(mapped ? misses.size() : 0);
             std::vector<std::uint64_t> rays(misses.size(), 0);
@@ -144,7 +145,7 @@ CacheBuild buildCache(const TransportContext& context, const Survey& seen, int w
                 const GatherPoint& p = seen.points[misses[i]];
                 Walk walk(context);
                 const GatherOptions options{size.gatherRays,
-                                            plan.minSpacing * p.footprint / error,
+                                            size.minSpacing * p.footprint / error,
                                             plan.maxSpacing * p.footprint / error,
                                             seed,
                                             plan.cacheMetric,

@@ -13,7 +13,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCacheFile{"pellucid cache 3\n", "the cache file", "delete it, or name another: it is made anew"};
+constexpr SealedKind kCacheFile{"pellucid cache 4\n", "the cache file", "delete it, or name another: it is made anew"};
 
 /// What a view may have for itself.
 constexpr std::array<std::string_view, 13> kOfTheView{
@@ -95,6 +95,7 @@ std::string cacheBody(const CacheKey& key, const LearntLight& light) {
     body.put(light.size.globalPaths);
     body.put(light.size.gatherRays);
     body.put(light.size.cacheError);
+    body.put(light.size.minSpacing);
     body.put(light.rays);
     body.putBlock(light.seen);
     body.put(light.cache->error());
@@ -121,6 +122,7 @@ LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& f
     light.size.globalPaths = reader.get<std::uint32_t>();
     light.size.gatherRays = reader.get<int>();
     light.size.cacheError = reader.get<float>();
+    light.size.minSpacing = reader.get<float>();
     light.rays = reader.get<double>();
     light.seen = reader.getBlock<std::vector<std::uint64_t>>();
     const auto error = reader.get<float>();
@@ -131,7 +133,7 @@ LearntLight parseCacheBody(std::string_view body, const std::filesystem::path& f
     const auto map = reader.getBlock<std::vector<char>>();
     const bool sizes = light.size.gatherRays > 0 && light.size.cacheError > 0.0F && error >= light.size.cacheError &&
                        error < 100.0F && metric <= static_cast<std::uint32_t>(CacheMetric::Hessian) &&
-                       light.rays >= 0.0;
+                       light.size.minSpacing >= 0.0F && std::isfinite(light.size.minSpacing) && light.rays >= 0.0;
     const bool mapped = scene != nullptr ? scene->surfaces().mapsDiffuseNormals() : !lights.empty();
     if (!reader.good() || reader.left() > 0 || !sizes || records.size() != reaches.size() ||
         lights.size() != (mapped ? records.size() : 0))

@@ -112,15 +112,17 @@ std::size_t pointLikeLights(const Lights& lights) {
 
 GenerationSize Plan::generation(std::uint32_t number) const noexcept {
     constexpr double kPhotonGrowth = 1.5, kErrorPower = 0.25, kMostPhotons = 1e7;
-    constexpr std::uint32_t kRayDoublings = 2;
+    constexpr std::uint32_t kRayDoublings = 2, kSpacingHalvings = 3;
     constexpr int kMostRays = 512;
-    GenerationSize size{globalPaths, gatherRays, 0.0F};
+    GenerationSize size{globalPaths, gatherRays, 0.0F, minSpacing};
     if (growPhotons)
         size.globalPaths =
             static_cast<std::uint32_t>(std::min(globalPaths * std::pow(kPhotonGrowth, number), kMostPhotons));
     if (mostGlobalPaths > 0) size.globalPaths = std::min(size.globalPaths, mostGlobalPaths);
     if (growRays) size.gatherRays = std::min(gatherRays << std::min(number, kRayDoublings), kMostRays);
     size.cacheError = static_cast<float>(static_cast<double>(cacheError) * std::pow(number + 1.0, -kErrorPower));
+    if (shrinkSpacing)
+        size.minSpacing = minSpacing * std::exp2(-static_cast<float>(std::min(number, kSpacingHalvings)));
     return size;
 }
 

@@ -201,6 +201,7 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
     plan.mostGlobalPaths = fitted.most;
     plan.growPhotons = s.globalPhotons < 0;
     plan.growRays = s.gatherRays <= 0;
+    plan.shrinkSpacing = !(s.minSpacing > 0.0);
     plan.globalMap = plan.globalPaths > 0;
     plan.cacheChoice = isOn(s.cacheChoice);
     plan.gatherGuide = isOn(s.cacheGuide);

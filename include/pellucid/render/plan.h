@@ -28,6 +28,7 @@ struct GenerationSize {
     std::uint32_t globalPaths = 0;
     int gatherRays = 0;       ///< a record
     float cacheError = 0.0F;  ///< Ward's a
+    float minSpacing = 0.0F;  ///< of records, in footprints
 };
 
 struct Plan {
@@ -48,8 +49,8 @@ struct Plan {
     std::uint32_t mostCausticPaths = 0;  ///< of any iteration, for photon.memory; 0: no limit
     std::uint32_t mostGlobalPaths = 0;   ///< of any generation, for photon.memory; 0: no limit
     /// From generation to generation.
-    bool growPhotons = true, growRays = true;
-    float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints
+    bool growPhotons = true, growRays = true, shrinkSpacing = true;
+    float minSpacing = 3.0F, maxSpacing = 40.0F;  ///< of records, in footprints; the least of the first generation
     bool causticsToEyePaths = false;  ///< where they see more than photons would: then there is no caustic map
     bool causticChains = false;    ///< beside the cache eye paths follow S chains to the lamps, alone or with a share
     bool bidirectional = false;    ///< eye paths meet light paths
@@ -66,8 +67,8 @@ struct Plan {
     double usefulShare = 0.0;  ///< of the photon paths, in the last look of the pilot
     double guideGain = 1.0;    ///< that share over the one without guide
 
-    /// A quick first generation, then ever better ones: more photons and rays, a smaller error, so that the bias of map and
-    /// cache vanishes as time goes on. What was set by name stays, but for the error.
+    /// A quick first generation, then ever better ones: more photons and rays, a smaller error and spacing, so that the bias of
+    /// map and cache vanishes as time goes on. What was set by name stays, but for the error.
     [[nodiscard]] GenerationSize generation(std::uint32_t number) const noexcept;
 };
 
