@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <pellucid/math/constants.h>
+
 namespace pellucid {
 
 IntervalSample sampleInterval(std::span<const double> cdf, double u) noexcept {
@@ -11,8 +13,7 @@ IntervalSample sampleInterval(std::span<const double> cdf, double u) noexcept {
     std::size_t index = static_cast<std::size_t>(std::min(above, cdf.end() - 1) - cdf.begin()) - 1;
     while (index > 0 && cdf[index + 1] <= cdf[index]) --index;
     const double length = cdf[index + 1] - cdf[index];
-    constexpr double kBelowOne = 1.0 - 0x1p-53;
-    return {index, std::clamp((x - cdf[index]) / length, 0.0, kBelowOne)};
+    return {index, std::clamp((x - cdf[index]) / length, 0.0, kLargestBelowOne)};
 }
 
 Distribution1D::Distribution1D(std::span<const double> weights) {

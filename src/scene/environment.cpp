@@ -156,7 +156,7 @@ std::optional<DirectionSample> Environment::sample(const glm::vec2& u) const noe
         const double texel = texelWeight(tx, ty), share = texel * rowSolidAngle(ty);
         if (share > 0.0) {  // the last texel with weight stands for what rounding leaves over
             x = tx, y = ty, weight = texel;
-            within = std::min(left / share, 1.0 - 0x1p-53);
+            within = std::min(left / share, kLargestBelowOne);
             if (left < share) break;
         }
         left -= share;

@@ -12,42 +12,32 @@ namespace pellucid {
 
 namespace {
 
-/// Photons as the search touches them: positions under the tree, the rest beside it.
+/// Photons in the order of the tree's leaves: positions in the tree, the rest beside it.
 struct Photons {
-    std::vector<PointSite> sites;
+    PointTree<Photon> tree;
     std::vector<PackedPhoton> packed;
     std::vector<float> etendueDensity;  ///< empty: all alike
     float common = 0.0F;                ///< then
 
-    explicit Photons(const PhotonList& list) : sites(list.begin(), list.end()) {
+    Photons(const PhotonList& list, const Workers* workers) : tree(list, workers) {
         packed.reserve(list.size());
         bool alike = true;
-        for (std::size_t i = 0; i < list.size(); ++i) {
+        for (const std::uint32_t i : tree.order()) {
             const Photon& p = list[i];
             packed.push_back({PackedFlux(p.flux, i), OctahedralVector(p.wi), OctahedralVector(p.normal)});
             alike = alike && p.etendueDensity == list.front().etendueDensity;
         }
         if (alike && !list.empty()) common = list.front().etendueDensity;
-        if (alike) return;
-        for (const Photon& p : list) etendueDensity.push_back(p.etendueDensity);
+        if (!alike)
+            for (const std::uint32_t i : tree.order()) etendueDensity.push_back(list[i].etendueDensity);
+        tree.tellPlaces();
     }
 
-    void putIn(const std::vector<std::uint32_t>& order) {
-        const auto put = [&order](auto& items) {
-            std::remove_reference_t<decltype(items)> moved;
-            moved.reserve(items.size());
-            for (const std::uint32_t i : order) moved.push_back(items[i]);
-            items = std::move(moved);
-        };
-        put(sites);
-        put(packed);
-        if (!etendueDensity.empty()) put(etendueDensity);
-    }
     [[nodiscard]] float density(std::uint32_t i) const noexcept {
         return etendueDensity.empty() ? common : etendueDensity[i];
     }
     [[nodiscard]] Photon operator[](std::size_t i) const {
-        return {sites[i].position, packed[i].wi.unit(), packed[i].normal.unit(), packed[i].flux.value(),
+        return {tree.position(i), packed[i].wi.unit(), packed[i].normal.unit(), packed[i].flux.value(),
                 density(static_cast<std::uint32_t>(i))};
     }
 };
@@ -93,7 +83,7 @@ struct CountFlux : WithinRadius {
         : WithinRadius{r2}, photons(list), point(p), normal(n) {}
     bool addPoint(float distance2, std::uint32_t index) noexcept {
         const PackedPhoton& p = photons.packed[index];
-        if (distance2 >= radius2 || !sameSurface(photons.sites[index].position - point, p.normal, normal, radius2))
+        if (distance2 >= radius2 || !sameSurface(photons.tree.position(index) - point, p.normal, normal, radius2))
             return true;
         const auto flux = static_cast<double>(luminance(p.flux.value()));
         sums.sum += flux;
@@ -119,7 +109,7 @@ struct KernelSum : WithinRadius {
     }
     bool addPoint(float distance2, std::uint32_t index) noexcept {
         const PackedPhoton& p = photons.packed[index];
-        const glm::vec3 offset = photons.sites[index].position - at.point;
+        const glm::vec3 offset = photons.tree.position(index) - at.point;
         if (distance2 >= radius2 || !sameSurface(offset, p.normal, at.geometricNormal, radius2)) return true;
         ++count;
         const float part = distance2 / radius2;
@@ -142,13 +132,8 @@ struct KernelSum : WithinRadius {
 struct CausticMap::Impl {
     Photons photons;
     PhotonKernel kernel;
-    PointTree<PointSite> tree;
     std::unique_ptr<Marks> used;
-    Impl(const PhotonList& list, PhotonKernel k, const Workers* workers)
-        : photons(list), kernel(k), tree(photons.sites, workers) {
-        photons.putIn(tree.order());
-        tree.tellPlaces();
-    }
+    Impl(const PhotonList& list, PhotonKernel k, const Workers* workers) : photons(list, workers), kernel(k) {}
 };
 
 CausticMap::CausticMap(PhotonList photons, PhotonKernel kernel, const Workers* workers) {
@@ -161,7 +146,7 @@ CausticMap::CausticMap(CausticMap&&) noexcept = default;
 template <class Shape>
 PhotonEstimate CausticMap::sum(const PhotonLookup& at) const noexcept {
     KernelSum<Shape> result(impl_->photons, at, impl_->used.get());
-    impl_->tree.search(at.point, result);
+    impl_->photons.tree.search(at.point, result);
     const double perArea =
         static_cast<double>(Shape::kScale) / (kPiD * static_cast<double>(at.radius) * static_cast<double>(at.radius));
     const Rgb irradiance(result.sum * perArea);
@@ -174,7 +159,7 @@ PhotonEstimate CausticMap::estimate(const PhotonLookup& at) const noexcept {
 
 FluxSums CausticMap::fluxWithin(const glm::vec3& point, const glm::vec3& geometricNormal, float radius) const noexcept {
     CountFlux result(impl_->photons, point, geometricNormal, radius * radius);
-    impl_->tree.search(point, result);
+    impl_->photons.tree.search(point, result);
     return result.sums;
 }
 
@@ -183,12 +168,12 @@ void CausticMap::watchUse() { impl_->used = std::make_unique<Marks>(size()); }
 std::vector<glm::vec3> CausticMap::used() const {
     std::vector<glm::vec3> places;
     for (std::size_t i = 0; impl_->used && i < size(); ++i)
-        if ((*impl_->used)[i]) places.push_back(impl_->photons.sites[i].position);
+        if ((*impl_->used)[i]) places.push_back(impl_->photons.tree.position(i));
     return places;
 }
 
 PhotonKernel CausticMap::kernel() const noexcept { return impl_->kernel; }
-std::size_t CausticMap::size() const noexcept { return impl_->photons.sites.size(); }
+std::size_t CausticMap::size() const noexcept { return impl_->photons.packed.size(); }
 
 PhotonList CausticMap::photons() const {
     PhotonList list;

@@ -72,13 +72,6 @@ void sortAlongMortonCurve(std::vector<Item>& items) {
     items = std::move(sorted);
 }
 
-/// A position alone.
-struct PointSite {
-    glm::vec3 position{0.0F};
-    template <class Item>
-    explicit PointSite(const Item& item) : position(item.position) {}
-};
-
 /// Part of a result set that keeps the nearest items within a bound: a max-heap of (distance^2, index).
 template <int Most>
 struct NearestHeap {
@@ -106,7 +99,7 @@ struct NearestHeap {
 
 /// A kd-tree over items with a `position`. With `workers` (null: one thread) many items get several trees, each over a stretch
 /// of their order, that are built at the same time: for items along the Morton curve few of them come near a point. How many
-/// depends on the number of items alone.
+/// depends on the number of items alone. Once it is built it does not need them.
 ///
 /// nanoflann builds the trees. The search over their nodes is our own: positions stand in the order of the leaves, axis by
 /// axis, so that a leaf's distances are a few vector instructions.
@@ -138,6 +131,9 @@ public:
 
     /// The numbers of the items in the order of the leaves.
     [[nodiscard]] const std::vector<std::uint32_t>& order() const noexcept { return order_; }
+    [[nodiscard]] glm::vec3 position(std::size_t place) const noexcept {
+        return {position_[0][place], position_[1][place], position_[2][place]};
+    }
     /// From here on a search tells items by their place in that order, for who has put them so.
     void tellPlaces() { order_ = {}; }
 

@@ -167,8 +167,7 @@ bool Walk::step(State& state, Branches& branches, Sampler& sampler, FirstHit* fi
     if (context_.options.lights == LightStrategy::Chance)
         direct = static_cast<LobeKinds>(direct & ~static_cast<unsigned>(sampled));
     sampler.setDimension(dimension + kLightChoice);
-    const bool served = !state.gathering && (direct & ~static_cast<unsigned>(sampled) & kDiffuse) != 0U;
-    if (direct != kNoLobe && served)
+    if (direct != kNoLobe && !state.gathering && leavesDiffuse(direct, sampled))
         addSplitDirect(state, vertex, direct, sampled, sampler);
     else if (direct != kNoLobe)
         addDirect(state, vertex, direct, sampled, sampler);

@@ -166,8 +166,7 @@ void Walk::addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKi
     const glm::vec2 u = Lights::pointNumbers(*pick, numbers);
     LightSample light;
     std::array<Rgb, 3> lobes;
-    if ((kinds & ~static_cast<unsigned>(sampled) & kDiffuse) != 0U &&
-        lights.kind(pick->light) == LightKind::Environment) {
+    if (leavesDiffuse(kinds, sampled) && lights.kind(pick->light) == LightKind::Environment) {
         if (!resampleEnvironment(vertex, kinds, sampled, *pick, u, sampler, light, lobes)) return;
     } else {
         const auto seen = lights.sampleFrom(*pick, position, vertex.lightNormal, u);

@@ -15,6 +15,11 @@ enum class Behind : std::uint8_t {
     PathTraced      ///< everything is path traced
 };
 
+/// Whether D light is looked for at lamps alone: no direction of that lobe is sampled, as maps serve the rest.
+[[nodiscard]] constexpr bool leavesDiffuse(LobeKinds direct, LobeKinds sampled) noexcept {
+    return (direct & ~static_cast<unsigned>(sampled) & kDiffuse) != 0U;
+}
+
 struct Walk::State {
     WalkRay ray;
     LayeredRadiance radiance;

@@ -63,10 +63,8 @@ private:
 
 struct PlainTree {
     PhotonList photons;
-    std::vector<PointSite> sites;
-    PointTree<PointSite> tree;
-    explicit PlainTree(PhotonList list)
-        : photons(std::move(list)), sites(photons.begin(), photons.end()), tree(sites) {}
+    PointTree<Photon> tree;
+    explicit PlainTree(PhotonList list) : photons(std::move(list)), tree(photons) {}
 };
 
 /// Made once for each count: the last one is kept.

@@ -86,9 +86,13 @@ TEST(GatherGuide, StrataHoldTheirDirections) {
     GatherStrata strata;
     strata.elevations = 5, strata.azimuths = 16;
     for (int k = 0; k < strata.azimuths; ++k)
-        for (int j = 0; j < strata.elevations; ++j)
+        for (int j = 0; j < strata.elevations; ++j) {
+            const float sine = std::sqrt((static_cast<float>(j) + 0.5F) / 5.0F);
+            const float phi = kTwoPi * (static_cast<float>(k) + 0.5F) / 16.0F;
+            EXPECT_EQ(strata.containing({sine * std::cos(phi), sine * std::sin(phi), 0.1F}), strata.index(j, k));
             for (const glm::vec2 within : {glm::vec2(0.5F), glm::vec2(0.01F, 0.99F), glm::vec2(0.99F, 0.01F)})
                 EXPECT_EQ(strata.containing(strata.direction(j, k, within)), strata.index(j, k));
+        }
 }
 
 TEST(GatherGuide, KeepsTheMeanAndTakesTheNoise) {

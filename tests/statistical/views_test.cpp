@@ -133,6 +133,7 @@ TEST_F(Views, AMovedCameraSeesTheSameLight) {
     const testing::MeanOfSeeds a = testing::meanOfSeeds(known), b = testing::meanOfSeeds(own);
     EXPECT_GT(testing::welch(a, b), testing::sidakLevel(1)) << a.mean << " for " << b.mean;
     EXPECT_LT(std::sqrt(a.variance + b.variance), 0.015 * b.mean) << "tells a loss";
+    EXPECT_NEAR(a.mean / b.mean, 1.0, 0.02);
 }
 
 TEST_F(Views, AMovedCameraAddsOnlyWhatItLacks) {
