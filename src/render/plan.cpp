@@ -9,6 +9,7 @@
 #include <pellucid/transport/walk.h>
 
 #include "plan_parts.h"
+#include "setting_choices.h"
 
 namespace pellucid {
 
@@ -51,8 +52,10 @@ void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) 
     for (std::uint32_t l = 0; l < scene.lights().count(); ++l)
         seenLamps = seenLamps || scene.lights().kind(l) == LightKind::Triangle;
     const bool both = glass && (isOn(s.split) || (!plain && !isOff(s.split)));
-    plan.splitLampChains = both && seenLamps;
-    plan.splitGlass = both && request.method != Method::Sppm;  // whose pixels count the photons of one place
+    const bool oneWay = request.method == Method::Sppm;  // whose pixels count the photons of one place
+    const bool twoSided = request.method == Method::Bdpt || plan.bidirectional;
+    plan.splitGlass = both && !oneWay && !twoSided;
+    plan.splitLampChains = both && seenLamps && (oneWay || twoSided);  // else those that split meet the lamps as well
     if (glass && !(plain && !isOn(s.split)))
         decide(plan, "eye paths at glass", both ? "both ways" : "by chance",
                seenLamps ? "the scene has glass, and lamps that can be seen" : "the scene has glass",

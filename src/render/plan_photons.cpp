@@ -30,11 +30,16 @@ constexpr std::uint64_t kPilotRounds = 6;
 /// Of a budget of time, for the pilot: then it makes do with what it found.
 constexpr double kPilotShare = 0.03;
 /// Photons of a budget of fewer seconds are fewer in proportion, down to a share: a first picture is worth more than a fine one.
-constexpr double kShortBudget = 2.5, kLeastOfShort = 0.2;
+constexpr double kShortBudget = 2.5, kShortForPilot = 8.0, kLeastOfShort = 0.2;
 constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
+/// Global photon paths. With a budget of time fewer in proportion, down to a share, where the camera sees fewer receivers than so
+/// many pixels.
 constexpr std::uint32_t kGlobalPaths = 75'000;
-/// Caustic photon paths an iteration: so many that this many are useful, between two bounds.
+constexpr double kManyReceivers = 4'000, kLeastOfGlobal = 0.1;
+/// Caustic photon paths an iteration: so many that this many are useful, between two bounds; all for a pixel that sees a
+/// receiver.
 constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
+constexpr double kFewestPaths = 2e4, kMostPaths = 4e6;
 constexpr double kOtherPathsPerPixel = 1.0;
 /// Pixels of a pilot of eye paths. With less of their noise from indirect diffuse light look-ups cost more than they save:
 /// as measured on scenes under skies.
@@ -56,10 +61,10 @@ void sizeFirstGeneration(Plan& plan, const Settings& asked, const Budget& budget
                                              : static_cast<double>(plan.cacheError) * std::pow(finer, kErrorOfRays));
 }
 
-[[nodiscard]] std::uint32_t withinShortBudget(double paths, const Budget& budget) {
-    const double left = budget.seconds.value_or(kShortBudget) - budget.startedSecondsAgo;
-    const double share = budget.seconds ? std::clamp(left / kShortBudget, kLeastOfShort, 1.0) : 1.0;
-    return static_cast<std::uint32_t>(share * paths);
+[[nodiscard]] std::uint32_t withinShortBudget(double paths, const Budget& budget, double shortSeconds = kShortBudget) {
+    if (!budget.seconds) return static_cast<std::uint32_t>(paths);
+    const double left = *budget.seconds - budget.startedSecondsAgo;
+    return static_cast<std::uint32_t>(std::clamp(left / shortSeconds, kLeastOfShort, 1.0) * paths);
 }
 
 /// Of the paths that would be useful if they started without guide.
@@ -79,7 +84,7 @@ void sizeFirstGeneration(Plan& plan, const Settings& asked, const Budget& budget
 std::size_t pilotCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
                           const Workers& workers) {
     std::vector<UsefulEmission> useful;
-    std::uint32_t paths = withinShortBudget(kPilotPaths, request.budget);
+    std::uint32_t paths = withinShortBudget(kPilotPaths, request.budget, kShortForPilot);
     double unguided = 0.0;
     bool aimed = false;
     CasterTally tally(scene);
@@ -137,9 +142,9 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     plan.causticMap = true;
     const double perPixel =
         std::clamp(kUsefulPerPixel / std::max(plan.usefulShare, 1e-6), kPathsPerPixel, kMostPathsPerPixel);
-    const auto wanted = static_cast<double>(seen.points.size()) * perPixel;
+    const double wanted = std::clamp(static_cast<double>(seen.receivers) * perPixel, kFewestPaths, kMostPaths);
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
-                                              : withinShortBudget(std::clamp(wanted, 2e4, 4e6), request.budget);
+                                              : withinShortBudget(wanted, request.budget);
     const FittedPaths fitted = fitCausticPaths(plan.causticPaths, plan, scene, request, seen, workers);
     plan.causticPaths = fitted.paths;
     plan.mostCausticPaths = fitted.most;
@@ -194,8 +199,11 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
         }
     }
     plan.cache = plan.globalMap = true;
+    const double ofGlobal = request.budget.seconds
+                                ? std::clamp(static_cast<double>(seen.receivers) / kManyReceivers, kLeastOfGlobal, 1.0)
+                                : 1.0;
     plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons)
-                                            : withinShortBudget(kGlobalPaths, request.budget);
+                                            : withinShortBudget(ofGlobal * kGlobalPaths, request.budget);
     const FittedPaths fitted = fitGlobalPaths(plan.globalPaths, plan, scene, request, workers);
     plan.globalPaths = fitted.paths;
     plan.mostGlobalPaths = fitted.most;

@@ -18,8 +18,12 @@ namespace {
 /// A look for a D vertex is given up after this many others.
 constexpr int kMostOnTheWay = 64;
 /// Of the threshold of roulette, along smooth chains from the eye whose branches are all followed: a weak reflection in glass
-/// is a small part of a pixel but mostly unlike the rest of it, so it is worth more looks than its share.
-constexpr float kChainRoulette = 0.25F;
+/// is a small part of a pixel but mostly unlike the rest of it, so it is worth more looks than its share. Not many more, where
+/// glass stands behind glass.
+constexpr float kChainRoulette = 0.16F;
+/// They part at so many interfaces at most. Beyond, a branch that total reflection keeps inside for thousands of bounces would be
+/// met more often than by chance.
+constexpr int kMostParting = 8;
 /// A branch takes its numbers from dimensions of its own, so many beyond those of the branch before it.
 constexpr std::uint64_t kDimensionsPerBranch = 1U << 12U;
 /// Sampler dimensions: 0 film, 1 lens, then this many a vertex.
@@ -100,7 +104,7 @@ bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sample
 }
 
 bool Walk::splits(const State& state) const noexcept {
-    return context_.options.splitGlass && state.deltaChain && !state.gathering;
+    return context_.options.splitGlass && state.deltaChain && !state.gathering && state.vertices <= kMostParting;
 }
 
 /// Where a smooth interface parts the light the walk goes one way and `other` waits for the other. False: it does not.

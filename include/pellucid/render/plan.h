@@ -55,8 +55,8 @@ struct Plan {
     bool causticChains = false;    ///< beside the cache eye paths follow S chains to the lamps, alone or with a share
     bool bidirectional = false;    ///< eye paths meet light paths
     float texelWidth = 0.0F;       ///< of the texel irradiance, scene units; 0: off
-    bool splitLampChains = false;  ///< lamps seen through smooth glass: both ways at each interface
-    bool splitGlass = false;       ///< all else that is seen through it, too
+    bool splitLampChains = false;  ///< only lamps seen through smooth glass: both ways at each interface
+    bool splitGlass = false;       ///< all that is seen through it
     bool adaptive = false;         ///< pixels take samples by their noise
     std::vector<UsefulEmission> training;
     std::vector<Decision> decisions;
