@@ -231,6 +231,12 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
                        plan.growPhotons ? ", half as many more for each next" : ""),
            s.globalPhotons >= 0);
     if (!fitted.remark.empty()) decide(plan, "global photons", "fewer", fitted.remark, true);
+    const bool asked = s.gatherRays > 0 || s.cacheError > 0.0;
+    decide(plan, "first records", fmt::format("{} rays, error {:.2g}", plan.gatherRays, plan.cacheError),
+           asked                                 ? "asked for"
+           : plan.gatherRays > Plan{}.gatherRays ? "so large an image sees few generations: its first is finer"
+                                                 : "each generation is finer than the one before",
+           asked);
 }
 
 void planOthers(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
