@@ -9,7 +9,6 @@
 #include <pellucid/transport/walk.h>
 
 #include "plan_parts.h"
-#include "setting_choices.h"
 
 namespace pellucid {
 
@@ -148,8 +147,7 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
         } else {
             plan.lightPass = true;
             const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
-            plan.causticPaths =
-                static_cast<std::uint32_t>(std::clamp(static_cast<double>(seen.points.size()), 2e4, 4e6));
+            plan.causticPaths = pathsOfPass(static_cast<double>(seen.points.size()));
             decide(plan, "light tracing", fmt::format("{} paths an iteration", plan.causticPaths),
                    fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons));
             if (request.method == Method::Reference) planReference(plan, scene, request, seen);

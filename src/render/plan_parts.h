@@ -1,7 +1,9 @@
 /// The parts of makePlan(): each decides about one side of the render and writes down why.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -14,6 +16,11 @@ namespace pellucid {
 
 inline void decide(Plan& plan, std::string name, std::string choice, std::string reason, bool overridden = false) {
     plan.decisions.push_back({std::move(name), std::move(choice), std::move(reason), overridden});
+}
+
+/// Light paths of an iteration, within what any image needs and gets.
+[[nodiscard]] inline std::uint32_t pathsOfPass(double wanted) {
+    return static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
 }
 
 /// Points, spots and directions: light that no path meets by chance.

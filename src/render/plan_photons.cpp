@@ -39,7 +39,6 @@ constexpr double kManyReceivers = 4'000, kLeastOfGlobal = 0.1;
 /// Caustic photon paths an iteration: so many that this many are useful, between two bounds; all for a pixel that sees a
 /// receiver.
 constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
-constexpr double kFewestPaths = 2e4, kMostPaths = 4e6;
 constexpr double kOtherPathsPerPixel = 1.0;
 /// Pixels of a pilot of eye paths. With less of their noise from indirect diffuse light look-ups cost more than they save:
 /// as measured on scenes under skies.
@@ -59,6 +58,12 @@ void sizeFirstGeneration(Plan& plan, const Settings& asked, const Budget& budget
     plan.cacheError = static_cast<float>(asked.cacheError > 0.0
                                              ? asked.cacheError
                                              : static_cast<double>(plan.cacheError) * std::pow(finer, kErrorOfRays));
+    const bool byName = asked.gatherRays > 0 || asked.cacheError > 0.0;
+    decide(plan, "first records", fmt::format("{} rays, error {:.2g}", plan.gatherRays, plan.cacheError),
+           byName        ? "asked for"
+           : finer > 1.0 ? "so large an image sees few generations: its first is finer"
+                         : "each generation is finer than the one before",
+           byName);
 }
 
 [[nodiscard]] std::uint32_t withinShortBudget(double paths, const Budget& budget, double shortSeconds = kShortBudget) {
@@ -142,7 +147,7 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     plan.causticMap = true;
     const double perPixel =
         std::clamp(kUsefulPerPixel / std::max(plan.usefulShare, 1e-6), kPathsPerPixel, kMostPathsPerPixel);
-    const double wanted = std::clamp(static_cast<double>(seen.receivers) * perPixel, kFewestPaths, kMostPaths);
+    const std::uint32_t wanted = pathsOfPass(static_cast<double>(seen.receivers) * perPixel);
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
                                               : withinShortBudget(wanted, request.budget);
     const FittedPaths fitted = fitCausticPaths(plan.causticPaths, plan, scene, request, seen, workers);
@@ -216,7 +221,6 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
     plan.cacheMetric = s.cacheMetric == "ward"        ? CacheMetric::Ward
                        : s.cacheMetric == "tabellion" ? CacheMetric::Tabellion
                                                       : CacheMetric::Hessian;
-    sizeFirstGeneration(plan, s, request.budget, seen.points.size());
     if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);
     if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
     const double receivers = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
@@ -231,12 +235,7 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
                        plan.growPhotons ? ", half as many more for each next" : ""),
            s.globalPhotons >= 0);
     if (!fitted.remark.empty()) decide(plan, "global photons", "fewer", fitted.remark, true);
-    const bool asked = s.gatherRays > 0 || s.cacheError > 0.0;
-    decide(plan, "first records", fmt::format("{} rays, error {:.2g}", plan.gatherRays, plan.cacheError),
-           asked                                 ? "asked for"
-           : plan.gatherRays > Plan{}.gatherRays ? "so large an image sees few generations: its first is finer"
-                                                 : "each generation is finer than the one before",
-           asked);
+    sizeFirstGeneration(plan, s, request.budget, seen.points.size());
 }
 
 void planOthers(Plan& plan, const Scene& scene, const RenderRequest& request, const Survey& seen,
@@ -245,8 +244,7 @@ void planOthers(Plan& plan, const Scene& scene, const RenderRequest& request, co
     if (seen.receivers == 0) return decide(plan, "other photons", "off", "the camera sees no diffuse surface");
     plan.otherPhotons = true;
     const double wanted = kOtherPathsPerPixel * static_cast<double>(seen.points.size());
-    plan.globalPaths =
-        asked >= 0 ? static_cast<std::uint32_t>(asked) : static_cast<std::uint32_t>(std::clamp(wanted, 2e4, 4e6));
+    plan.globalPaths = asked >= 0 ? static_cast<std::uint32_t>(asked) : pathsOfPass(wanted);
     const FittedPaths fitted = fitOtherPaths(plan.globalPaths, scene, request, seen, workers);
     plan.globalPaths = fitted.paths;
     decide(plan, "other photons", fmt::format("{} paths an iteration", plan.globalPaths),

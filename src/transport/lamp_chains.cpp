@@ -11,19 +11,20 @@ namespace {
 
 /// Beyond those that a walk uses.
 constexpr std::uint64_t kDimension = 1ULL << 20U;
-/// Roulette sets in below this throughput.
+/// Roulette sets in below this throughput, at the first surfaces.
 constexpr float kLeastThroughput = 0.05F;
 
 }  // namespace
 
 void LampChains::branchOff(const ChainVertex& vertex, const DeltaBranches& branches, Sampler& sampler) {
     const glm::vec3& ng = vertex.bsdf.geometricNormal();
+    const float least = vertex.vertices <= kMostParting ? kLeastThroughput : 1.0F;
     for (int i = 0; i < branches.count; ++i) {
         const BsdfSample& way = branches.branch[static_cast<std::size_t>(i)];
         Branch b;
         b.throughput = vertex.throughput * way.weight;
         b.etaScale = vertex.etaScale * way.etaScale;
-        const float chance = survival(maxComponent(b.throughput) * b.etaScale / kLeastThroughput, vertex.vertices);
+        const float chance = survival(maxComponent(b.throughput) * b.etaScale / least, vertex.vertices);
         if (!(chance > 0.0F) || (chance < 1.0F && sampler.next1D() >= chance)) continue;
         b.throughput /= chance;
         const bool behind = glm::dot(way.wi, ng) < 0.0F;

@@ -14,4 +14,8 @@ namespace pellucid {
     return vertices > kCertainVertices ? std::min(chance, kSurvivalBeyond) : chance;
 }
 
+/// Along smooth chains from the eye whose branches are all followed roulette is mild, at so many surfaces and no more: beyond, branches
+/// that total reflection keeps inside for thousands of bounces would be followed more often than by chance.
+inline constexpr int kMostParting = 8;
+
 }  // namespace pellucid

@@ -21,9 +21,6 @@ constexpr int kMostOnTheWay = 64;
 /// is a small part of a pixel but mostly unlike the rest of it, so it is worth more looks than its share. Not many more, where
 /// glass stands behind glass.
 constexpr float kChainRoulette = 0.16F;
-/// They part at so many interfaces at most. Beyond, a branch that total reflection keeps inside for thousands of bounces would be
-/// met more often than by chance.
-constexpr int kMostParting = 8;
 /// A branch takes its numbers from dimensions of its own, so many beyond those of the branch before it.
 constexpr std::uint64_t kDimensionsPerBranch = 1U << 12U;
 /// Sampler dimensions: 0 film, 1 lens, then this many a vertex.

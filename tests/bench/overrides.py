@@ -74,7 +74,7 @@ def arguments():
 
 
 def render(options, scene, sky, image, size, seconds, seed, extra):
-    """CPU seconds over those given, and the record."""
+    """CPU time used over that given, and the record."""
     command = [options.pellucid, "render", scene, "-o", image, "--size", size, "--time", seconds, "--seed", seed]
     command += ["--threads", 2, "--quiet", "--record", image.with_suffix(".json")]
     if sky is not None:
@@ -91,8 +91,8 @@ def render(options, scene, sky, image, size, seconds, seed, extra):
 
 def difference(options, reference, image):
     command = [options.pellucid, "diff", reference, image, "--json"]
-    answer = json.loads(subprocess.run([str(word) for word in command], check=True, capture_output=True).stdout)
-    return answer["images"][0] if "images" in answer else answer[0]
+    answer = subprocess.run([str(word) for word in command], check=True, capture_output=True).stdout
+    return json.loads(answer)["images"][0]
 
 
 def row(options, name, columns):
@@ -126,7 +126,7 @@ def row(options, name, columns):
 def main():
     options = arguments()
     options.folder.mkdir(parents=True, exist_ok=True)
-    columns = [column for column in options.columns.split(",")]
+    columns = options.columns.split(",")
     print("| scene | " + " | ".join(columns) + " | plan over best | truth over estimate |")
     print("|---" * (len(columns) + 3) + "|")
     for name in options.only.split(","):
@@ -135,7 +135,8 @@ def main():
             print(f"{name}: skipped, not found", file=sys.stderr)
             continue
         cells, truth = made
-        over = ", ".join(f"{cells['plan'][k] / min(c[k] for c in cells.values()):.2f}" for k in (0, 1) if "plan" in cells)
+        best = [min(figures) for figures in zip(*cells.values())]
+        over = ", ".join(f"{plan / least:.2f}" for plan, least in zip(cells.get("plan", []), best))
         numbers = " | ".join("{:.1e}, {:.1e}".format(*cells[column]) for column in columns)
         print(f"| {name} | {numbers} | {over} | {', '.join(f'{t:.2f}' for t in truth)} |", flush=True)
 

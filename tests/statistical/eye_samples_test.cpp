@@ -1,8 +1,12 @@
 /// How eye samples are spread: over noisy pixels, and over both ways that an interface leads. Neither may change
 /// what the image means, nor its bits with threads or a break.
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 #include <gtest/gtest.h>
+
+#include <pellucid/io/gltf.h>
 
 #include "../support/files.h"
 #include "../support/same_bits.h"
@@ -111,6 +115,39 @@ TEST(EyeSamples, BothWaysAtGlassTakeItsNoise) {
         const Agreement agreement = agreementOf(valuesOf(a, 4, layer), valuesOf(s, 4, layer));
         EXPECT_TRUE(agreement.holds(sidakLevel(2))) << layer << ": " << agreement;
     }
+}
+
+/// Rays of two samples a pixel by eight seeds.
+double raysOf(const Scene& scene, Method method, const char* split, const Workers& workers) {
+    std::uint64_t rays = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        RenderRequest request;
+        request.method = method;
+        request.width = request.height = 64;
+        request.seed = seed;
+        request.budget.samples = 2;
+        request.settings = with({}, "path.split", split);
+        for (const StageRecord& stage : render(scene, request, workers).record.stages) rays += stage.rays;
+    }
+    return static_cast<double>(rays);
+}
+
+/// Total reflection keeps a few chains in glass for thousands of bounces, where shading normals are not those of the facets.
+/// Both ways must not look for them.
+TEST(EyeSamples, BothWaysDoNotGetLostInGlass) {
+    const Workers workers;
+    const Scene goblet(loadGltf(PELLUCID_SOURCE_DIR "/scenes/goblet.glb", {}), std::nullopt, SceneOptions{}, workers);
+    check::SceneBuilder b;
+    detail::addCorner(b, detail::coloured({0.5F, 0.5F, 0.5F}), detail::coloured({0.4F, 0.5F, 0.6F}));
+    b.sphere({0.0, 0.6, 0.0}, 0.55, 8, check::glass(2.4F), true);
+    b.square({0.6, 2.2, 1.2}, {0, -1, 0}, 0.25, check::lamp(60.0F));
+    const Scene facets(b.description(), std::nullopt, SceneOptions{}, workers);
+    const auto expectFew = [&](const Scene& scene, Method method) {
+        const double both = raysOf(scene, method, "on", workers), one = raysOf(scene, method, "off", workers);
+        EXPECT_LT(both, 1.25 * one) << both / one << " times: a branch is followed more often than by chance";
+    };
+    expectFew(facets, Method::Path);
+    expectFew(goblet, Method::Bdpt);
 }
 
 /// One pixel's noise feeds its later shares: a mean in which noisier pixels counted their samples more would be off.
