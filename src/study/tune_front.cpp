@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::array<double, 4> kTimeShare{0.125, 0.25, 0.5, 1.0};
 constexpr int kMostSeeds = 8, kSeedsOfIterations = 4;
-constexpr int kPeersSeeds = 2;  // peers' settings are marks on the front, not contenders for it
+constexpr int kPeersSeeds =
+    2;  // then their settings are but marks on the front, unless they seem better than the default
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[nodiscard]] std::vector<Finalist> finalistsOf(const SearchOutcome& search, const SearchSpace& space,
@@ -37,11 +38,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[nodiscard]] bool isPeer(const Finalist& finalist, const std::vector<Candidate>& peers) {
     return std::ranges::any_of(peers, [&](const Candidate& c) { return c.origin == finalist.name; });
-}
-
-/// Peers are measured at the whole time only.
-[[nodiscard]] bool wanted(const Finalist& f, std::size_t point, int seed, const std::vector<Candidate>& peers) {
-    return !isPeer(f, peers) || (point + 1 == f.points.size() && seed < kPeersSeeds);
 }
 
 void fill(FrontPoint& point, const FrontPoint& standard) {
@@ -108,12 +104,12 @@ void markFront(Front& front) {
     return timeToError(seconds, relmse, error);
 }
 
-/// A departure from the default has to be surer than chance: the mean of the log ratios over the seeds lies below 0 by
-/// more than its standard error.
+/// A departure from the default has to be surer than chance: over all its seeds, and the mean of the log ratios lies below 0
+/// by more than its standard error.
 [[nodiscard]] bool surelyBetter(const Finalist& f, const Finalist& standard) {
     const FrontPoint &own = f.points.back(), &base = standard.points.back();
-    const std::size_t n = std::min(own.relmse.size(), base.relmse.size());
-    if (n == 0) return false;
+    const std::size_t n = own.relmse.size();
+    if (n == 0 || n < base.relmse.size()) return false;
     double sum = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
         const double r =
@@ -126,13 +122,24 @@ void markFront(Front& front) {
     return mean + deviation < -0.02;
 }
 
+/// Which finalists the next seed is rendered for: peers beyond their first seeds only when they may still win.
+[[nodiscard]] std::vector<bool> goingOn(const Front& front, int seed, const std::vector<Candidate>& peers) {
+    std::vector<bool> list;
+    for (const Finalist& f : front.finalists)
+        list.push_back(!isPeer(f, peers) || seed < kPeersSeeds ||
+                       (f.mayWin && surelyBetter(f, front.finalists.front())));
+    return list;
+}
+
 /// Renders one seed of all finalists; false when interrupted.
 [[nodiscard]] bool measureSeed(Front& front, int k, int most, const TuneRequest& request,
                                const std::vector<Candidate>& peers, TrialRunner& runner, double limit) {
-    for (Finalist& f : front.finalists)
+    const std::vector<bool> going = goingOn(front, k, peers);
+    for (std::size_t which = 0; which < front.finalists.size(); ++which) {
+        Finalist& f = front.finalists[which];
         for (std::size_t i = 0; i < f.points.size(); ++i) {
-            if (!wanted(f, i, k, peers)) continue;
             const bool last = i + 1 == f.points.size(), shown = f.name == "default" || f.name == "tuned";
+            if (!going[which] || (isPeer(f, peers) && !last)) continue;
             // Whatever is left, the default and the tuned settings are rendered once for the whole time.
             if (!(last && shown) && k == 0 && request.iterations == 0 && runner.spent() > limit) continue;
             const double share = request.iterations > 0 ? 0.6 + 0.4 * k / most : runner.spent() / request.budget;
@@ -143,6 +150,7 @@ void markFront(Front& front) {
             f.points[i].relmse.push_back(trial->relmse);
             f.points[i].cost.push_back(trial->cost);
         }
+    }
     return true;
 }
 

@@ -13,7 +13,7 @@ namespace pellucid {
 
 namespace {
 
-/// A step, of all lamps together, but at least so many of each: a guide has to see one lamp among a hundred.
+/// A step, of all pairs of a lamp and a caster together, but at least so many of each: a guide has to see one lamp among a hundred.
 constexpr std::uint32_t kTries = 40'000, kFewestTries = 1'000;
 constexpr std::size_t kMostLamps = 256;  ///< more are aimed as one
 constexpr std::size_t kMostPairs = 400;  ///< of a lamp and a caster
@@ -120,7 +120,8 @@ std::vector<UsefulEmission> aimAtCasters(const Scene& scene, std::uint64_t seed,
     if (lamps.empty()) return {};
     std::vector<Sphere> casters = castersOf(scene);
     casters.resize(std::min(casters.size(), std::max<std::size_t>(1, kMostPairs / lamps.size())));
-    const std::uint32_t tries = std::max(kFewestTries, kTries / static_cast<std::uint32_t>(lamps.size()));
+    const std::size_t pairs = std::max<std::size_t>(1, casters.size() * lamps.size());
+    const std::uint32_t tries = std::max(kFewestTries, kTries / static_cast<std::uint32_t>(pairs));
     const EmissionGuide ofAll(scene.lights(), {});
     std::vector<UsefulEmission> all;
     std::uint64_t pass = kAimPass;

@@ -236,5 +236,16 @@ TEST(TuneChoice, PicksThePointThatIsAskedFor) {
     EXPECT_EQ(choose(front, {TuneGoal::Kind::Time, 4.0}).finalist, 0U);
 }
 
+/// A rare bright pixel in one seed of the default would else make a winner of any that did not render that seed.
+TEST(TuneChoice, WhatMissesSeedsDoesNotWin) {
+    Front front;
+    front.finalists = {finalistOf("default", {0.08, 0.06, 0.04}), finalistOf("Mitsuba 0.6", {0.07, 0.05, 0.02})};
+    FrontPoint& last = front.finalists[1].points.back();
+    EXPECT_EQ(choose(front, {TuneGoal::Kind::Time, 4.0}).finalist, 1U);
+    last.relmse.pop_back();
+    last.cost.pop_back();
+    EXPECT_EQ(choose(front, {TuneGoal::Kind::Time, 4.0}).finalist, 0U);
+}
+
 }  // namespace
 }  // namespace pellucid
