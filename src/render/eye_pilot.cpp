@@ -8,6 +8,8 @@
 
 #include <pellucid/math/hash.h>
 
+#include "stages.h"
+
 namespace pellucid {
 
 namespace {
@@ -88,6 +90,7 @@ EyePilot pilotEyePaths(const TransportContext& context, const Camera& camera, st
     for (unsigned code = 0; code < PathString::kCodes; ++code)
         parts[code] = partOf(PathString(static_cast<std::uint8_t>(code)), causticsApart);
     EyePilot pilot;
+    const WallClock::time_point began = WallClock::now();
     std::vector<PixelSums> sums;
     while (sums.size() < pixels && pilot.rays < kEnoughRays) {
         const std::size_t first = sums.size();
@@ -100,6 +103,7 @@ EyePilot pilotEyePaths(const TransportContext& context, const Camera& camera, st
         });
         pilot.rays += std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
     }
+    pilot.seconds = secondsSince(began);
     double mean = 0.0;
     for (const PixelSums& p : sums) mean += p.all / kSamples / static_cast<double>(sums.size());
     const double floor = static_cast<double>(kFloor) * mean * mean + 1e-30;

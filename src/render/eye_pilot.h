@@ -14,6 +14,7 @@ struct EyePilot {
     /// part that goes if light from E .. D on, but for direct light and caustics, is known.
     double indirectShare = 1.0;
     std::uint64_t rays = 0;
+    double seconds = 0.0;
 };
 
 /// `pixels`: how many are looked at, or fewer where paths are long. `causticsApart`: a map holds the caustics.

@@ -44,6 +44,8 @@ constexpr double kOtherPathsPerPixel = 1.0;
 /// as measured on scenes under skies.
 constexpr std::size_t kEyePilotPixels = 2048;
 constexpr double kLeastIndirect = 0.08;
+/// Rays of the first generation of records: of each global photon path, and of all records.
+constexpr double kRaysOfGlobalPath = 6.0, kRaysOfRecords = 150'000.0;
 
 /// A large image has time for few generations of records before its budget of time is over: its first one is finer, by up to so
 /// many times as many rays, from so many pixels on and so many seconds a pixel on. [docs/benchmarks.md]
@@ -70,6 +72,15 @@ void sizeFirstGeneration(Plan& plan, const Settings& asked, const Budget& budget
     if (!budget.seconds) return static_cast<std::uint32_t>(paths);
     const double left = *budget.seconds - budget.startedSecondsAgo;
     return static_cast<std::uint32_t>(std::clamp(left / shortSeconds, kLeastOfShort, 1.0) * paths);
+}
+
+/// Of the budget, what the first generation of records takes: as large a part of the noise has to go with it.
+[[nodiscard]] double shareOfFirstRecords(std::uint32_t globalPaths, const EyePilot& pilot, const Budget& budget) {
+    const double rays = kRaysOfGlobalPath * globalPaths + kRaysOfRecords;
+    if (budget.rays) return rays / static_cast<double>(std::max<std::uint64_t>(1, *budget.rays));
+    if (!budget.seconds || pilot.rays == 0) return 0.0;
+    const double seconds = rays * pilot.seconds / static_cast<double>(pilot.rays);
+    return seconds / std::max(1e-3, *budget.seconds - budget.startedSecondsAgo);
 }
 
 /// Of the paths that would be useful if they started without guide.
@@ -188,27 +199,29 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
         decide(plan, "global map", "off", "nothing gathers from it");
         return;
     }
+    const double ofGlobal = request.budget.seconds
+                                ? std::clamp(static_cast<double>(seen.receivers) / kManyReceivers, kLeastOfGlobal, 1.0)
+                                : 1.0;
+    plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons)
+                                            : withinShortBudget(ofGlobal * kGlobalPaths, request.budget);
     double share = 1.0;
     if (!isOn(s.cache) && request.cacheFile.empty() && !lightsReachCastersByPhotonsAlone(scene)) {
         const TransportContext context{scene, transportOptions(s), {}};
         const EyePilot pilot = pilotEyePaths(context, camera, request.seed, plan.causticMap, kEyePilotPixels, workers);
         plan.pilotRays += pilot.rays;
         share = pilot.indirectShare;
-        if (share < kLeastIndirect) {
-            decide(
-                plan, "irradiance cache", "off",
-                fmt::format("{:.1f} % of path tracing's noise is indirect diffuse light (limit {:.0f} %): it is path "
-                            "traced",
-                            100.0 * share, 100.0 * kLeastIndirect));
+        const double ofBudget = shareOfFirstRecords(plan.globalPaths, pilot, request.budget);
+        if (const double limit = std::clamp(ofBudget, kLeastIndirect, 1.0); share < limit) {
+            plan.globalPaths = 0;
+            decide(plan, "irradiance cache", "off",
+                   fmt::format("{:.1f} % of path tracing's noise is indirect diffuse light (limit {:.0f} %{}): it is "
+                               "path traced",
+                               100.0 * share, 100.0 * limit,
+                               ofBudget > kLeastIndirect ? ", what the first records would take of the budget" : ""));
             return decide(plan, "global map", "off", "nothing gathers from it");
         }
     }
     plan.cache = plan.globalMap = true;
-    const double ofGlobal = request.budget.seconds
-                                ? std::clamp(static_cast<double>(seen.receivers) / kManyReceivers, kLeastOfGlobal, 1.0)
-                                : 1.0;
-    plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons)
-                                            : withinShortBudget(ofGlobal * kGlobalPaths, request.budget);
     const FittedPaths fitted = fitGlobalPaths(plan.globalPaths, plan, scene, request, workers);
     plan.globalPaths = fitted.paths;
     plan.mostGlobalPaths = fitted.most;

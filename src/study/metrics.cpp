@@ -12,8 +12,6 @@
 namespace pellucid {
 namespace {
 
-constexpr double kTrimmedShare = 0.001;  // of the pixels, the worst ones
-
 /// Sums over the values that count and are finite in both images.
 struct ValueSums {
     double reference = 0.0, image = 0.0, squaredError = 0.0, symmetric = 0.0;

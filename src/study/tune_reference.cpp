@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@
 #include <pellucid/io/plain_file.h>
 #include <pellucid/study/diff_report.h>
 #include <pellucid/study/image_pair.h>
+#include <pellucid/study/metrics.h>
 
 #include "run_store.h"
 #include "study_json.h"
@@ -174,14 +176,16 @@ void TuneReference::weigh() {
         }
 }
 
-double TuneReference::relmse(const Image& image, const std::vector<PixelWindow>& windows) const {
+double TuneReference::relmseTrimmed(const Image& image, const std::vector<PixelWindow>& windows) const {
     const bool halves = first.pixels() > 0;
     const ImagePair a(halves ? first : mean, image), b(halves ? second : mean, image);
-    double sum = 0.0, count = 0.0;
+    std::vector<double> errors;
     const auto add = [&](const PixelWindow& w) {
         for (int y = w.y0; y < w.y1; ++y)
             for (int x = w.x0; x < w.x1; ++x) {
                 const std::size_t pixel = pixelAt(x, y, image.width());
+                double sum = 0.0;
+                int values = 0;
                 for (std::size_t c = 0; c < 3; ++c) {
                     const double weight = static_cast<double>(weights.at(pixel, static_cast<int>(c)));
                     const double value = static_cast<double>(a.image(pixel, c));
@@ -189,13 +193,20 @@ double TuneReference::relmse(const Image& image, const std::vector<PixelWindow>&
                                            (value - static_cast<double>(b.reference(pixel, c)));
                     if (!(weight > 0.0) || !std::isfinite(product)) continue;
                     sum += weight * product;
-                    count += 1.0;
+                    ++values;
                 }
+                if (values > 0) errors.push_back(sum / values);
             }
     };
     if (windows.empty()) add({0, 0, image.width(), image.height()});
     for (const PixelWindow& w : windows) add(w);
-    return (count > 0.0 ? sum / count : 0.0) - noise;
+    if (errors.empty()) return -noise;
+    // A glint in one half of the reference makes a term as wrong below 0.
+    const auto worst = static_cast<std::ptrdiff_t>(std::ceil(kTrimmedShare * static_cast<double>(errors.size())));
+    std::ranges::nth_element(errors, errors.begin() + worst,
+                             [](double x, double y) { return std::abs(x) > std::abs(y); });
+    const auto kept = static_cast<double>(errors.size()) - static_cast<double>(worst);
+    return std::accumulate(errors.begin() + worst, errors.end(), 0.0) / std::max(1.0, kept) - noise;
 }
 
 TuneReference referenceFor(const TuneRequest& request, const SceneSource& scenes, double limit, const Workers& workers,

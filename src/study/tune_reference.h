@@ -29,9 +29,10 @@ struct TuneReference {
     /// below 3 %; a clean reference is not blurred at all.
     void weigh();
 
-    /// relmse of `image` over the windows (none: everywhere) without the reference's noise; may come out slightly below
-    /// 0.
-    [[nodiscard]] double relmse(const Image& image, const std::vector<PixelWindow>& windows) const;
+    /// relmse of `image` over the windows (none: everywhere) without the reference's noise, and without the worst thousandth of
+    /// the pixels: a lamp's glint there, which one render of a thousand meets, would else decide between settings. May come out
+    /// slightly below 0.
+    [[nodiscard]] double relmseTrimmed(const Image& image, const std::vector<PixelWindow>& windows) const;
 };
 
 /// DIR/reference.exr and its halves. `limit` in seconds, or nominal ones, for both halves together.

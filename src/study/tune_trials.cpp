@@ -147,7 +147,7 @@ std::optional<Trial> TrialRunner::run(const Candidate& candidate, const TrialPla
         interrupted_ = true;
         return std::nullopt;
     }
-    Trial trial{settings, plan, reference_.relmse(result.image, render.windows), result.record.seconds, 0.0};
+    Trial trial{settings, plan, reference_.relmseTrimmed(result.image, render.windows), result.record.seconds, 0.0};
     if (request_.iterations > 0) trial.cost = nominalSeconds(result.record);
     if (missing)
         writeExr(image, result.image, {{"pellucid.version", request_.version}, {"pellucid.settings", settings}});

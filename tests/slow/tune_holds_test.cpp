@@ -92,7 +92,7 @@ struct Measured {
             request.budget.rays = static_cast<std::uint64_t>(time * kRaysOfNominalSecond);
             const RenderResult result = render(scenes(settings).scene, request, workers);
             seconds += nominalSeconds(result.record) / kFreshSeeds;
-            relmse += reference.relmse(result.image, {}) / kFreshSeeds;
+            relmse += reference.relmseTrimmed(result.image, {}) / kFreshSeeds;
         }
         m.seconds.push_back(seconds);
         m.relmse.push_back(std::max(1e-12, relmse));

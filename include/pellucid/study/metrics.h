@@ -7,6 +7,9 @@
 
 namespace pellucid {
 
+/// Of the pixels, the worst ones: a trimmed mean leaves them out.
+inline constexpr double kTrimmedShare = 0.001;
+
 struct Metrics {
     double rmse = 0.0;           ///< root of the mean of (I-R)^2 over pixels and channels
     double relmse = 0.0;         ///< mean of (I-R)^2 / (R^2 + 0.01 mean(R)^2)

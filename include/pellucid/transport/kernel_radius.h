@@ -1,7 +1,8 @@
 /// The radius of the caustic kernel, pixel by pixel, from the photons themselves: it grows until it holds enough photons, or
 /// until the ring that would be added does not look like the disc inside (Lepski's method: the largest radius at which no
 /// smaller one contradicts the estimate). So an even glow is averaged over many pixels and a sharp edge over hardly one.
-/// Bias enters here: what the test cannot tell from even light is blurred. [Lepski1991]
+/// Neighbours smooth what chance has ended, but not an edge beyond doubt, which no kernel of that place may cross. Bias enters
+/// here: what the test cannot tell from even light is blurred. [Lepski1991]
 #pragma once
 
 #include <vector>
@@ -17,9 +18,14 @@ struct KernelRadiusOptions {
     double enough = 60.0;                    ///< photons (of equal power) that a kernel needs to hold
 };
 
-/// The radius at `point`, in footprints.
-[[nodiscard]] float chooseKernelRadius(const CausticMap& map, const GatherPoint& point,
-                                       const KernelRadiusOptions& options) noexcept;
+/// Radii at a point, in footprints.
+struct KernelChoice {
+    float radius = 0.0F;
+    float edge = 0.0F;  ///< the same where what ended its growth is beyond doubt, else the largest
+};
+
+[[nodiscard]] KernelChoice chooseKernelRadius(const CausticMap& map, const GatherPoint& point,
+                                              const KernelRadiusOptions& options) noexcept;
 
 /// Radii of all pixels: means, in the logarithm, over the passes that they were chosen from.
 class KernelRadii {
@@ -45,6 +51,8 @@ public:
     [[nodiscard]] bool restore(const std::vector<char>& bytes, const Workers& workers);
 
 private:
+    /// How far the points of the next pixels are from this one's, in footprints: many, where the view grazes.
+    [[nodiscard]] float toNextPixels(const std::vector<GatherPoint>& points, int x, int y) const;
     void smooth(const Workers& workers);
     void correctBlocks(std::uint32_t iterations, const std::vector<Shown>& blocks, const Workers& workers);
     [[nodiscard]] std::size_t blockAt(int bx, int by) const noexcept {
@@ -55,6 +63,7 @@ private:
     KernelRadiusOptions options_;
     std::vector<float> logRadius_;  ///< by block: the newest pass counts half, as the guide gets better
     std::vector<float> logFactor_;  ///< by block: what the image's own noise and bias have corrected
+    std::vector<float> logEdge_;    ///< by block: no further, an edge lies there
     std::vector<float> radii_;      ///< by block; smoothed
 };
 
