@@ -13,7 +13,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCacheFile{"pellucid cache 4\n", "the cache file", "delete it, or name another: it is made anew"};
+constexpr SealedKind kCacheFile{"pellucid cache 5\n", "the cache file", "delete it, or name another: it is made anew"};
 
 /// What a view may have for itself.
 constexpr std::array<std::string_view, 13> kOfTheView{
@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 13> kOfTheView{
     "photon.chance",  "photon.caustic_map", "reference.eye_paths"};
 
 /// The last two members are whole numbers.
-constexpr std::size_t kFloatsOfRecord = 35;
+constexpr std::size_t kFloatsOfRecord = 36;
 static_assert(std::is_trivially_copyable_v<IrradianceRecord> &&
               sizeof(IrradianceRecord) == kFloatsOfRecord * sizeof(float) + 2 * sizeof(std::uint32_t));
 

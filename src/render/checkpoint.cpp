@@ -8,7 +8,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCheckpoint{"pellucid checkpoint 8\n", "the checkpoint", "delete it and render from the start"};
+constexpr SealedKind kCheckpoint{"pellucid checkpoint 9\n", "the checkpoint", "delete it and render from the start"};
 
 }  // namespace
 

@@ -31,7 +31,7 @@ bool EyeSide::renewsShares(std::uint32_t samples) const noexcept {
 
 std::optional<double> EyeSide::renewShares(Film& film, const CausticSide& caustics, std::uint32_t iteration) {
     const std::uint32_t n = film.samples();
-    const std::optional<double>& seconds = view_.request.budget.seconds;
+    const std::optional<double> seconds = view_.request.budget.nominalSeconds();
     if (view_.plan.adaptive && view_.plan.causticMap && n == 0 && !(seconds && *seconds <= kShortBudget))
         film.setShares(std::vector<std::uint8_t>(film.pixels(), kFirstShare));
     if (!renewsShares(n)) return std::nullopt;

@@ -29,6 +29,7 @@ void Film::add(std::size_t pixel, std::uint32_t iteration, const LayeredRadiance
     p.squareSquare += w * w * y * y;
     const double shared = static_cast<double>(radiance.shared), own = y - shared;
     p.blur += w * static_cast<double>(radiance.blur);
+    p.recordNoise += w * static_cast<double>(radiance.recordNoise);
     if ((iteration & 1U) != 0) p.blurHalf += w * static_cast<double>(radiance.blur);
     p.sharedSum += shared;
     p.sharedSquare += shared * shared;

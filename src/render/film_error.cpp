@@ -80,17 +80,26 @@ double Film::blur2(const Pixel& p) const noexcept {
     return odd > 0.0 && even > 0.0 ? p.blurHalf / odd * ((p.blur - p.blurHalf) / even) : 0.0;
 }
 
-double Film::relativeBlur2() const noexcept {
-    if (terms_.count < 2) return 0.0;
+template <class Square>
+double Film::relative(const Square& square) const noexcept {
     double meanValue = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < pixels_.size(); ++i) meanValue += luminanceOf(pixels_[i]);
     meanValue /= static_cast<double>(pixels_.size());
     const double floor = std::max(0.01 * meanValue * meanValue, 1e-300);
     for (const Pixel& p : pixels_) {
         const double value = luminanceOf(p);
-        sum += blur2(p) / (value * value + floor);
+        sum += square(p) / (value * value + floor);
     }
     return std::max(0.0, sum / static_cast<double>(pixels_.size()));
+}
+
+double Film::relativeBlur2() const noexcept {
+    if (terms_.count < 2) return 0.0;
+    return relative([this](const Pixel& p) { return blur2(p); });
+}
+
+double Film::relativeRecordNoise2() const noexcept {
+    return relative([this](const Pixel& p) { return std::pow(p.recordNoise / terms_.divisor(), 2.0); });
 }
 
 double Film::relativeNoise2() const noexcept {

@@ -12,7 +12,7 @@ namespace pellucid {
 namespace {
 
 /// A new generation of records is due when the eye passes since the last have cost this many times as much as it did.
-constexpr double kGenerationShare = 1.5;
+constexpr double kGenerationShare = 1.0;
 /// Where indirect light is less than this part of the image, the next generation comes later in proportion, by up to this.
 constexpr double kMuchIndirect = 0.25, kMostPatience = 10.0;
 /// How much longer the next generation takes, about.
@@ -57,20 +57,21 @@ void IndirectLight::startFrom(std::optional<LearntLight> known, std::uint32_t ge
     generation_ = generation;
 }
 
-bool IndirectLight::due(std::uint32_t iteration, const Film& film, const StageRecord& eyes,
-                        const RenderClock& clock) const {
-    if (!view_.plan.cache || iteration == 0) return view_.plan.cache;
+bool IndirectLight::due(const Pace& pace, const StageRecord& eyes) const {
+    if (!view_.plan.cache || pace.iterations == 0) return view_.plan.cache;
     if (frozen_) return false;
     if (raysSince_ <= kGenerationShare * raysOfGeneration_) return false;
     // Where little light is indirect its records may be the worse.
-    const double patience = std::clamp(kMuchIndirect / std::max(film.indirectShare(), 1e-6), 1.0, kMostPatience);
+    const double patience = std::clamp(kMuchIndirect / std::max(pace.film.indirectShare(), 1e-6), 1.0, kMostPatience);
     if (raysSince_ <= kGenerationShare * patience * raysOfGeneration_) return false;
-    // Near the end of a budget of time a new one would not be used enough.
-    const std::optional<double>& budget = view_.request.budget.seconds;
+    // Near the end of a budget a new one would not be used enough.
     const double asLearnt =
         eyes.seconds * raysOfGeneration_ / std::max(1.0, static_cast<double>(eyes.rays));  // if it was loaded
     const double next = std::max(secondsOfGeneration_, loaded_ ? asLearnt : 0.0) * kGenerationGrowth;
-    return !budget || clock.elapsed() + (1.0 + kGenerationShare) * next <= *budget;
+    constexpr double kToUse = 1.0 + kGenerationShare;
+    if (pace.budget.seconds && pace.seconds + kToUse * next > *pace.budget.seconds) return false;
+    const double raysToUse = kToUse * kGenerationGrowth * raysOfGeneration_;
+    return !pace.budget.rays || static_cast<double>(pace.rays) + raysToUse <= static_cast<double>(*pace.budget.rays);
 }
 
 LearntLight IndirectLight::nextGeneration() {

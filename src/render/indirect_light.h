@@ -11,12 +11,12 @@
 #include <vector>
 
 #include <pellucid/base/progress.h>
-#include <pellucid/render/film.h>
 
 #include "cache_builder.h"
 #include "cache_file.h"
 #include "checkpoint.h"
 #include "learnt_light.h"
+#include "pacing.h"
 #include "point_cloud.h"
 #include "prepared_view.h"
 #include "stages.h"
@@ -38,9 +38,8 @@ public:
     /// All iterations read `light` as it is.
     void freeze(const LearntLight& light) { frozen_ = light; }
 
-    /// Whether a new generation should be made before this iteration. `eyes`: what eye passes have cost.
-    [[nodiscard]] bool due(std::uint32_t iteration, const Film& film, const StageRecord& eyes,
-                           const RenderClock& clock) const;
+    /// Whether a new generation should be made before the next iteration. `eyes`: what eye passes have cost.
+    [[nodiscard]] bool due(const Pace& pace, const StageRecord& eyes) const;
     /// Makes it: fresh global photons and fresh records, with an error bound that tightens; or what is known, and more of it.
     /// `maps`: those of the caustic side. A budget of time cuts it short, and so does `progress`.
     void renew(const Maps& maps, RenderClock& clock, const Progress& progress);

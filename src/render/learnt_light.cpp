@@ -12,8 +12,9 @@ namespace pellucid {
 
 namespace {
 
-/// Where the global map is evaluated for gather rays.
-constexpr std::size_t kPlaces = 60'000;
+/// Where the global map is evaluated for gather rays: a place costs as much as ten photon paths, and the records of a first
+/// generation ask few. [docs/benchmarks.md]
+constexpr std::uint32_t kPathsOfPlace = 5, kFewestPlaces = 10'000, kMostPlaces = 60'000;
 /// A map serves as it is when at most this share of the places that a view wants is missing.
 constexpr double kMayMiss = 0.01;
 
@@ -32,11 +33,16 @@ std::uint64_t hashOf(const Survey& survey) noexcept {
     return hash;
 }
 
+std::uint32_t placesBeside(std::uint32_t globalPaths) noexcept {
+    return std::clamp(globalPaths / kPathsOfPlace, kFewestPlaces, kMostPlaces);
+}
+
 GlobalPass learnMap(const TransportContext& context, const Survey& seen, LearntLight& light, const Workers& workers) {
     RadianceMapOptions options;
     options.maxRadius = kMaxMapRadius * context.scene.radius();
     options.seed = hashCombine(light.seed, kGlobalPass + light.generation);
-    std::vector<GatherPoint> places = findPlaces(context, seen.points, kPlaces, options.seed, workers);
+    std::vector<GatherPoint> places =
+        findPlaces(context, seen.points, placesBeside(light.size.globalPaths), options.seed, workers);
     if (light.map) {
         std::vector<std::uint8_t> missing(places.size(), 0);
         workers.forEach(places.size(), 256, [&](std::size_t i) {

@@ -40,6 +40,9 @@ struct LearntCounts {
 /// Tells views apart by the points that they see.
 [[nodiscard]] std::uint64_t hashOf(const Survey& survey) noexcept;
 
+/// Tries at places of the global map of so many photon paths.
+[[nodiscard]] std::uint32_t placesBeside(std::uint32_t globalPaths) noexcept;
+
 /// Gives `light` a map for what is seen: a new one, or more places of the one that it has, where gather rays from here would
 /// land and hardly find any. Returns the photon pass, with the rays of all; empty when the map that is there serves.
 [[nodiscard]] GlobalPass learnMap(const TransportContext& context, const Survey& seen, LearntLight& light,

@@ -18,6 +18,12 @@ constexpr double kLeastLeft = 0.55;
 
 }  // namespace
 
+std::optional<double> Budget::nominalSeconds() const noexcept {
+    if (seconds) return *seconds - startedSecondsAgo;
+    if (rays) return static_cast<double>(*rays) / kRaysOfNominalSecond;
+    return std::nullopt;
+}
+
 double Pace::fractionDone() const {
     double fraction = 0.0;
     if (budget.samples)

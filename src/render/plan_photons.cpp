@@ -11,6 +11,7 @@
 
 #include "caustic_choice.h"
 #include "eye_pilot.h"
+#include "learnt_light.h"
 #include "photon_memory.h"
 #include "plan_parts.h"
 #include "setting_choices.h"
@@ -39,13 +40,16 @@ constexpr double kManyReceivers = 4'000, kLeastOfGlobal = 0.1;
 /// Caustic photon paths an iteration: so many that this many are useful, between two bounds; all for a pixel that sees a
 /// receiver.
 constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
+/// Where fewer are useful than this share, the pass keeps rare bright paths out of the image and does little else: with a budget
+/// of time it is smaller in proportion, down to a share.
+constexpr double kHopefulShare = 0.005, kLeastOfHopeless = 0.2;
 constexpr double kOtherPathsPerPixel = 1.0;
 /// Pixels of a pilot of eye paths. With less of their noise from indirect diffuse light look-ups cost more than they save:
 /// as measured on scenes under skies.
 constexpr std::size_t kEyePilotPixels = 2048;
 constexpr double kLeastIndirect = 0.08;
-/// Rays of the first generation of records: of each global photon path, and of all records.
-constexpr double kRaysOfGlobalPath = 6.0, kRaysOfRecords = 150'000.0;
+/// Rays of the first generation of records: of each global photon path, of each place of their map, and of all records.
+constexpr double kRaysOfGlobalPath = 2.0, kRaysOfPlace = 12.0, kRaysOfRecords = 100'000.0;
 
 /// A large image has time for few generations of records before its budget of time is over: its first one is finer, by up to so
 /// many times as many rays, from so many pixels on and so many seconds a pixel on. [docs/benchmarks.md]
@@ -53,7 +57,8 @@ constexpr double kMostFiner = 2.0, kLargeImage = 131'072, kSecondsAPixel = 1.5e-
 
 void sizeFirstGeneration(Plan& plan, const Settings& asked, const Budget& budget, std::size_t pixels) {
     const auto count = static_cast<double>(pixels);
-    const bool hurried = budget.seconds && *budget.seconds < kSecondsAPixel * count;
+    const auto seconds = budget.nominalSeconds();
+    const bool hurried = seconds && *seconds < kSecondsAPixel * count;
     const double finer = hurried ? 1.0 : std::clamp(count / kLargeImage, 1.0, kMostFiner);
     plan.gatherRays =
         asked.gatherRays > 0 ? asked.gatherRays : static_cast<int>(finer * static_cast<double>(plan.gatherRays));
@@ -69,14 +74,13 @@ void sizeFirstGeneration(Plan& plan, const Settings& asked, const Budget& budget
 }
 
 [[nodiscard]] std::uint32_t withinShortBudget(double paths, const Budget& budget, double shortSeconds = kShortBudget) {
-    if (!budget.seconds) return static_cast<std::uint32_t>(paths);
-    const double left = *budget.seconds - budget.startedSecondsAgo;
-    return static_cast<std::uint32_t>(std::clamp(left / shortSeconds, kLeastOfShort, 1.0) * paths);
+    const double share = budget.nominalSeconds().value_or(shortSeconds) / shortSeconds;
+    return static_cast<std::uint32_t>(std::clamp(share, kLeastOfShort, 1.0) * paths);
 }
 
 /// Of the budget, what the first generation of records takes: as large a part of the noise has to go with it.
 [[nodiscard]] double shareOfFirstRecords(std::uint32_t globalPaths, const EyePilot& pilot, const Budget& budget) {
-    const double rays = kRaysOfGlobalPath * globalPaths + kRaysOfRecords;
+    const double rays = kRaysOfGlobalPath * globalPaths + kRaysOfPlace * placesBeside(globalPaths) + kRaysOfRecords;
     if (budget.rays) return rays / static_cast<double>(std::max<std::uint64_t>(1, *budget.rays));
     if (!budget.seconds || pilot.rays == 0) return 0.0;
     const double seconds = rays * pilot.seconds / static_cast<double>(pilot.rays);
@@ -158,7 +162,9 @@ void planCaustics(Plan& plan, const Scene& scene, const RenderRequest& request, 
     plan.causticMap = true;
     const double perPixel =
         std::clamp(kUsefulPerPixel / std::max(plan.usefulShare, 1e-6), kPathsPerPixel, kMostPathsPerPixel);
-    const std::uint32_t wanted = pathsOfPass(static_cast<double>(seen.receivers) * perPixel);
+    const double hope =
+        request.budget.nominalSeconds() ? std::clamp(plan.usefulShare / kHopefulShare, kLeastOfHopeless, 1.0) : 1.0;
+    const double wanted = hope * pathsOfPass(static_cast<double>(seen.receivers) * perPixel);
     plan.causticPaths = s.causticPhotons >= 0 ? static_cast<std::uint32_t>(s.causticPhotons)
                                               : withinShortBudget(wanted, request.budget);
     const FittedPaths fitted = fitCausticPaths(plan.causticPaths, plan, scene, request, seen, workers);
@@ -199,7 +205,7 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
         decide(plan, "global map", "off", "nothing gathers from it");
         return;
     }
-    const double ofGlobal = request.budget.seconds
+    const double ofGlobal = request.budget.nominalSeconds()
                                 ? std::clamp(static_cast<double>(seen.receivers) / kManyReceivers, kLeastOfGlobal, 1.0)
                                 : 1.0;
     plan.globalPaths = s.globalPhotons >= 0 ? static_cast<std::uint32_t>(s.globalPhotons)

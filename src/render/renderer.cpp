@@ -70,8 +70,7 @@ void Renderer::iterate() {
 
 /// What the eye paths of this iteration read.
 void Renderer::makeMaps() {
-    if (indirect_.due(iteration_, film_, eyes_.stage(), clock_))
-        indirect_.renew(caustics_.maps(source_), clock_, progress_);
+    if (indirect_.due(pace(), eyes_.stage())) indirect_.renew(caustics_.maps(source_), clock_, progress_);
     if (view_.plan.causticMap) caustics_.pass(source_, film_, iteration_);
     if (view_.plan.otherPhotons) others_.pass(iteration_);
 }
@@ -146,6 +145,7 @@ RenderRecord Renderer::record() const {
     r.errorEstimate = film_.relativeError();
     r.noiseEstimate = std::sqrt(film_.relativeNoise2());
     r.blurEstimate = std::sqrt(film_.relativeBlur2());
+    r.recordsEstimate = std::sqrt(film_.relativeRecordNoise2());
     r.nonfinite = film_.nonfinite();
     r.resolved = resolvedSettings(view_.request.settings, view_.plan);
     r.resolved.causticPhotons = static_cast<int>(source_.paths());

@@ -123,7 +123,9 @@ std::string recordJson(const RenderRecord& record, const RecordContext& context)
         json["nonfinite_first"] = {
             {"x", record.nonfinite.x}, {"y", record.nonfinite.y}, {"sample", record.nonfinite.sample}};
     json["error_estimate"] = record.errorEstimate;
-    json["error_parts"] = {{"noise", record.noiseEstimate}, {"kernel_bias", record.blurEstimate}};
+    json["error_parts"] = {{"noise", record.noiseEstimate},
+                           {"kernel_bias", record.blurEstimate},
+                           {"record_noise", record.recordsEstimate}};
     if (record.texels.texels > 0)
         json["texel_reference"] = {{"texels", record.texels.texels},
                                    {"width_metres", record.texels.width},

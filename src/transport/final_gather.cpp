@@ -80,6 +80,22 @@ void addIrradiance(const GatherGrid& grid, const Frame& frame, IrradianceRecord&
         record.grazingShare[c] = record.irradiance[c] > 0.0F ? grazing[c] / record.irradiance[c] : 0.0F;
 }
 
+/// A draw of the irradiance's error, from three strata at a time that lie beside each other: (L1 - 2 L2 + L3) / sqrt(2) has the
+/// variance of L1 + L2 + L3 where they are alike, and what changes evenly from one to the next does not count.
+[[nodiscard]] float noiseOf(const GatherGrid& grid, std::uint64_t key) {
+    float sum = 0.0F;
+    for (int j = 0; j < grid.elevations; ++j) {
+        const auto light = [&](int k) { return luminance(grid.at(j, k % grid.azimuths).radiance); };
+        for (int k = 0; k < grid.azimuths; k += 3) {
+            const bool positive = (hashCombine(key, grid.index(j, k)) & 1U) != 0;
+            const float whole = static_cast<float>(std::min(3, grid.azimuths - k)) / 3.0F;  // the last ones borrow
+            const float second = (light(k) - 2.0F * light(k + 1) + light(k + 2)) * std::sqrt(0.5F * whole);
+            sum += positive ? second : -second;
+        }
+    }
+    return sum * kPi / static_cast<float>(grid.cells.size());
+}
+
 }  // namespace
 
 IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const GatherOptions& options, std::uint64_t key,
@@ -90,6 +106,7 @@ IrradianceRecord gatherRecord(Walk& walk, const GatherPoint& point, const Gather
     record.position = point.position;
     record.normal = point.unmappedNormal;
     addIrradiance(grid, frame, record);
+    record.noise = noiseOf(grid, hashCombine(options.seed, key));
     addRotation(grid, frame, record);
     addTranslation(grid, frame, kNearestShare * options.minRadius, record);
     setRadius(grid, frame, options, record);

@@ -232,12 +232,14 @@ std::optional<Irradiance> IrradianceCache::lookup(const glm::vec3& position, con
         }
         sum.plain += weight * e;
         sum.grazing += weight * e * grazing;
+        sum.noise += weight * r.noise;
         weights += weight;
         ++sum.records;
     });
     if (!(weights > 0.0F)) return std::nullopt;
     sum.plain /= weights;
     sum.grazing /= weights;
+    sum.noise /= weights;
     return sum;
 }
 

@@ -100,8 +100,9 @@ LobeKinds Walk::serveDiffuse(State& state, const Vertex& vertex, Sampler& sample
     }
     if (maps.cache != nullptr) {
         if (const auto cached = maps.cache->lookup(position, vertex.bsdf.unmappedNormal(), normal, &rays_)) {
-            state.radiance.add(state.ledger.pathAfter(kDiffuse).open(),
-                               state.throughput * outgoing * cached->through(lobe));
+            const Rgb reflected = state.throughput * outgoing;
+            state.radiance.add(state.ledger.pathAfter(kDiffuse).open(), reflected * cached->through(lobe));
+            state.radiance.recordNoise += luminance(reflected) * lobe.a * cached->noise;
             state.chainsNext = maps.causticChains;
             return state.chainsNext ? kDiffuse : kNoLobe;
         }

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Bounds scene;
     scene.extend(glm::vec3(-1.0F));
     scene.extend(glm::vec3(1.0F));
-    (void)unseal(bytes, SealedKind{"pellucid cache 4\n", "the cache file", "delete it"});
+    (void)unseal(bytes, SealedKind{"pellucid cache 5\n", "the cache file", "delete it"});
     try {
         const LearntLight light = parseCacheBody(bytes, "fuzz", nullptr, scene);
         const glm::vec3 normal(0.0F, 1.0F, 0.0F);

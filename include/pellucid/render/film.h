@@ -66,12 +66,16 @@ public:
 
     /// The mean: R G B, the four layers, and the auxiliary `layers` asked for.
     [[nodiscard]] Image image(const std::vector<std::string>& layers) const;
-    /// Root of the relmse of the mean: its noise, from its two halves, and the blur of the photons' kernels. What records of
-    /// the cache have in common is not seen.
-    [[nodiscard]] double relativeError() const noexcept { return std::sqrt(relativeNoise2() + relativeBlur2()); }
+    /// Root of the relmse of the mean: its noise, from its two halves; the blur of the photons' kernels; and the noise of the
+    /// cache's records, which both halves have in common. The bias of their interpolation is not seen.
+    [[nodiscard]] double relativeError() const noexcept {
+        return std::sqrt(relativeNoise2() + relativeBlur2() + relativeRecordNoise2());
+    }
     [[nodiscard]] double relativeNoise2() const noexcept;
     /// Of the mean, without the noise of its own estimate: the product of that from odd and from even iterations.
     [[nodiscard]] double relativeBlur2() const noexcept;
+    /// Of the mean over the records' generations: each pixel has carried a draw of their error along.
+    [[nodiscard]] double relativeRecordNoise2() const noexcept;
     /// Of the mean so far, all classes.
     [[nodiscard]] double luminanceAt(int x, int y) const noexcept;
     [[nodiscard]] double meanLuminance() const noexcept;
@@ -112,6 +116,7 @@ private:
         double eyeSum = 0.0, eyeSquare = 0.0;
         double sharedSum = 0.0, sharedSquare = 0.0;  ///< of the luminance that photons gave, unweighed
         double blur = 0.0, blurHalf = 0.0;
+        double recordNoise = 0.0;
         std::uint64_t rays = 0;
         std::uint32_t taken = 0;
         std::uint8_t share = 1;
@@ -125,6 +130,9 @@ private:
     [[nodiscard]] double luminanceOf(const Pixel& p) const noexcept;
     [[nodiscard]] double variance(const Pixel& p) const noexcept;
     [[nodiscard]] double blur2(const Pixel& p) const noexcept;
+    /// Of what `square` says of pixels, relative to the squares of their luminance: the mean over them.
+    template <class Square>
+    [[nodiscard]] double relative(const Square& square) const noexcept;
     [[nodiscard]] std::size_t savedSize() const noexcept;
     [[nodiscard]] double stringMean(std::size_t slot, std::size_t pixel, std::size_t channel) const noexcept;
     /// Strings that have radiance somewhere, as (slot, name).

@@ -22,6 +22,9 @@ class Scene;
 
 enum class Method { Photon, Path, Light, Reference, Bdpt, Sppm };
 
+/// What a second stands for where costs are counted in rays, so that they are the same on every machine.
+inline constexpr double kRaysOfNominalSecond = 2e6;
+
 /// The first of the limits that is reached ends the render. All empty: error 0.05 with the plan's cap on time.
 struct Budget {
     std::optional<double> seconds;         ///< wall time, with everything from `startedSecondsAgo` on
@@ -29,6 +32,9 @@ struct Budget {
     std::optional<double> error;           ///< relative error of the image, as estimated
     std::optional<std::uint64_t> rays;     ///< of all passes together: a limit that every machine reaches alike
     double startedSecondsAgo = 0.0;        ///< what loading has taken already
+
+    /// For plans: the time that is left, or what the limit of rays stands for; empty: there is neither.
+    [[nodiscard]] std::optional<double> nominalSeconds() const noexcept;
 };
 
 /// A part of the image, half open, in pixels from the upper left corner.
@@ -114,8 +120,8 @@ struct RenderRecord {
     std::uint32_t iterations = 0, samplesPerPixel = 0;
     double seconds = 0.0;
     double errorEstimate = 0.0;  ///< relative, root of the estimated relmse
-    /// Its parts, added in squares: noise, and bias of the photons' kernels.
-    double noiseEstimate = 0.0, blurEstimate = 0.0;
+    /// Its parts, added in squares: noise, bias of the photons' kernels, noise of the cache's records.
+    double noiseEstimate = 0.0, blurEstimate = 0.0, recordsEstimate = 0.0;
     NonFinite nonfinite;
     Settings resolved;
     int threads = 0;

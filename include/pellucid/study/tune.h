@@ -37,9 +37,6 @@ struct TuneGoal {
 /// "error=0.02" or "time=30". Throws Error{Usage}.
 [[nodiscard]] TuneGoal parseGoal(const std::string& text);
 
-/// What a second stands for where costs are counted in rays, so that they are the same on every machine.
-inline constexpr double kRaysOfNominalSecond = 2e6;
-
 struct TuneRequest {
     double time = 0.0;             ///< seconds that the renders to tune for are to take
     double budget = 0.0;           ///< seconds for the tuning as a whole; not used with `iterations`

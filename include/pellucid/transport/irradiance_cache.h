@@ -27,9 +27,10 @@ class Scene;
 /// One gather. Gradients hold a column for each colour channel.
 struct IrradianceRecord {
     glm::vec3 position{0.0F}, normal{0.0F};
-    Rgb irradiance{0.0F};                    ///< W m^-2
-    Rgb grazingShare{0.0F};                  ///< E5 / E (surface/bsdf.h, DiffuseLobe)
-    std::array<glm::vec3, 3> rotation{};     ///< dE/d(rotation), rad^-1, as (n_i x n) . rotation
+    Rgb irradiance{0.0F};                 ///< W m^-2
+    Rgb grazingShare{0.0F};               ///< E5 / E (surface/bsdf.h, DiffuseLobe)
+    float noise = 0.0F;                   ///< W m^-2, luminance: a draw from the distribution of the irradiance's error
+    std::array<glm::vec3, 3> rotation{};  ///< dE/d(rotation), rad^-1, as (n_i x n) . rotation
     std::array<glm::vec3, 3> translation{};  ///< dE/dx, per scene unit
     float harmonicDistance = 0.0F;           ///< R: mean distance of what is seen
     float radius = 0.0F;                     ///< R after bounds and neighbour clamping
@@ -53,6 +54,7 @@ enum class Silence : std::uint8_t {
 
 struct Irradiance {
     Rgb plain{0.0F}, grazing{0.0F};  ///< E and E5
+    float noise = 0.0F;              ///< as the records' own
     int records = 0;                 ///< that spoke
 
     /// int L T(wi) cos for a lobe: a E - b E5.

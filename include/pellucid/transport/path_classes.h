@@ -124,6 +124,7 @@ struct LayeredRadiance {
     std::array<Rgb, kPathClasses> layer{Rgb(0.0F), Rgb(0.0F), Rgb(0.0F), Rgb(0.0F)};
     float shared = 0.0F;            ///< luminance of what photons gave, which other samples of the iteration see too
     float blur = 0.0F;              ///< luminance: estimated bias of the kernels in it
+    float recordNoise = 0.0F;       ///< luminance: what the records' noise adds to it, a draw of theirs
     StringSums* strings = nullptr;  ///< not owned; receives the same radiance by string
 
     void add(PathString path, const Rgb& radiance) {
@@ -136,6 +137,7 @@ struct LayeredRadiance {
         for (std::size_t l = 0; l < layer.size(); ++l) layer[l] += other.layer[l] * weight;
         shared += other.shared * weight;
         blur += other.blur * weight;
+        recordNoise += other.recordNoise * weight;
         if (strings != nullptr && other.strings != nullptr)
             for (const auto& [path, radiance] : *other.strings) strings->emplace_back(path, radiance * weight);
     }
