@@ -96,7 +96,9 @@ void IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& 
     const std::size_t places = placesOf(light), records = recordsOf(light);
     const std::uint64_t view = hashOf(view_.survey);
     const bool complete = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
-    if (!complete) {
+    if (!complete && cut()) {
+        if (!first) light = std::move(before);  // too late to begin
+    } else if (!complete) {
         const std::unique_ptr<const GatherGuide> guide = view_.plan.globalMap ? makeMap(light, maps) : nullptr;
         CacheBuild build = makeRecords(light, guide.get(), maps, clock, cut);
         const bool whole = !cut();

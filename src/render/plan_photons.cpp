@@ -50,6 +50,9 @@ constexpr std::size_t kEyePilotPixels = 2048;
 constexpr double kLeastIndirect = 0.08;
 /// Rays of the first generation of records: of each global photon path, of each place of their map, and of all records.
 constexpr double kRaysOfGlobalPath = 2.0, kRaysOfPlace = 12.0, kRaysOfRecords = 100'000.0;
+/// So large a part of the noise has to go with them, for the share of the budget that they take: paths that meet records are
+/// shorter, too.
+constexpr double kNoiseForTime = 0.7;
 
 /// A large image has time for few generations of records before its budget of time is over: its first one is finer, by up to so
 /// many times as many rays, from so many pixels on and so many seconds a pixel on. [docs/benchmarks.md]
@@ -78,7 +81,7 @@ void sizeFirstGeneration(Plan& plan, const Settings& asked, const Budget& budget
     return static_cast<std::uint32_t>(std::clamp(share, kLeastOfShort, 1.0) * paths);
 }
 
-/// Of the budget, what the first generation of records takes: as large a part of the noise has to go with it.
+/// Of the budget, what the first generation of records takes.
 [[nodiscard]] double shareOfFirstRecords(std::uint32_t globalPaths, const EyePilot& pilot, const Budget& budget) {
     const double rays = kRaysOfGlobalPath * globalPaths + kRaysOfPlace * placesBeside(globalPaths) + kRaysOfRecords;
     if (budget.rays) return rays / static_cast<double>(std::max<std::uint64_t>(1, *budget.rays));
@@ -217,13 +220,16 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
         plan.pilotRays += pilot.rays;
         share = pilot.indirectShare;
         const double ofBudget = shareOfFirstRecords(plan.globalPaths, pilot, request.budget);
-        if (const double limit = std::clamp(ofBudget, kLeastIndirect, 1.0); share < limit) {
+        if (const double limit = std::clamp(kNoiseForTime * ofBudget, kLeastIndirect, 1.0); share < limit) {
             plan.globalPaths = 0;
-            decide(plan, "irradiance cache", "off",
-                   fmt::format("{:.1f} % of path tracing's noise is indirect diffuse light (limit {:.0f} %{}): it is "
-                               "path traced",
-                               100.0 * share, 100.0 * limit,
-                               ofBudget > kLeastIndirect ? ", what the first records would take of the budget" : ""));
+            decide(
+                plan, "irradiance cache", "off",
+                fmt::format(
+                    "{:.1f} % of path tracing's noise is indirect diffuse light (limit {:.0f} %{}): it is path traced",
+                    100.0 * share, 100.0 * limit,
+                    limit > kLeastIndirect
+                        ? fmt::format(", as the first records would take {:.0f} % of the budget", 100.0 * ofBudget)
+                        : ""));
             return decide(plan, "global map", "off", "nothing gathers from it");
         }
     }
