@@ -145,11 +145,12 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
         if ((scene.lobeKinds() & kSpecular) == kNoLobe) {
             decide(plan, "light tracing", "off", "no material casts caustics");
         } else {
-            plan.lightPass = true;
-            const std::size_t useful = pilotCaustics(plan, scene, request, seen, workers);
+            plan.lightPass = true;  // unguided where one look a pixel met no receiver: there may be a small one
+            const std::size_t useful = seen.receivers > 0 ? pilotCaustics(plan, scene, request, seen, workers) : 0;
             plan.causticPaths = pathsOfPass(static_cast<double>(seen.points.size()));
             decide(plan, "light tracing", fmt::format("{} paths an iteration", plan.causticPaths),
-                   fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons));
+                   seen.receivers > 0 ? fmt::format("{} of {} pilot photons are useful", useful, plan.pilotPhotons)
+                                      : "unguided: the camera sees no diffuse surface");
             if (request.method == Method::Reference) planReference(plan, scene, request, seen);
         }
     } else {

@@ -1,9 +1,11 @@
 /// The plan leaves cache and global map out where light that they would know is hardly any of path tracing's noise, really
-/// out; and keeps them where that noise is theirs, and where path tracing would lose light for good.
+/// out; and keeps them where that noise is theirs, and where path tracing would lose light for good. Photons of a pilot are
+/// not traced for a camera that sees nothing that they could light.
 #include <gtest/gtest.h>
 
 #include <pellucid/render/render.h>
 #include <pellucid/scene/scene.h>
+#include <pellucid/study/record_json.h>
 
 #include "small_scenes.h"
 
@@ -69,6 +71,31 @@ TEST(CacheLeftOut, UnderAnOpenSky) {
 TEST(CacheLeftOut, NotInACorner) {
     EXPECT_GT(spentOnIndirectLight(roughGlass()).records, 0U);
     EXPECT_GT(spentOnIndirectLight(smoothCasters()).records, 0U);
+}
+
+/// A lamp through a slab of glass; with a floor in view where `floor` is set.
+[[nodiscard]] std::uint64_t pilotPhotons(Method method, bool floor) {
+    check::SceneBuilder b;
+    b.box({-3, -3, 0}, {3, 3, 0.2}, check::glass(1.5F));
+    b.square({0, 0, -0.5}, {0, 0, 1}, 1.0, check::lamp(1.0F));
+    if (floor) b.square({0, 0, -0.6}, {0, 0, 1}, 3.0, check::lambert(0.5F));
+    b.perspective({0.1, 0.2, 3.0}, {0, 0, 0}, 0.9);
+    const Workers workers(2);
+    const Scene scene(b.description(), std::nullopt, SceneOptions{}, workers);
+    RenderRequest request;
+    request.method = method;
+    request.width = request.height = 32;
+    request.budget.samples = 1;
+    for (const StageRecord& s : render(scene, request, workers).record.stages)
+        if (s.name == "pilot") return s.photonsEmitted;
+    return 0;
+}
+
+TEST(PilotLeftOut, WhereTheCameraSeesNoReceiver) {
+    for (const Method method : {Method::Photon, Method::Light, Method::Reference, Method::Sppm}) {
+        EXPECT_EQ(pilotPhotons(method, false), 0U) << methodName(method);
+        EXPECT_GT(pilotPhotons(method, true), 0U) << methodName(method);
+    }
 }
 
 TEST(CacheLeftOut, NotWherePathTracingWouldLoseLight) { EXPECT_GT(spentOnIndirectLight(openUnderPoint()).records, 0U); }
