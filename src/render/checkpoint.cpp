@@ -8,7 +8,8 @@ namespace pellucid {
 
 namespace {
 
-constexpr SealedKind kCheckpoint{"pellucid checkpoint 9\n", "the checkpoint", "delete it and render from the start"};
+constexpr SealedKind kCheckpoint{"pellucid checkpoint 10\n", "the checkpoint", "delete it and render from the start"};
+constexpr std::int32_t kMostGatherRays = 1'000'000;
 
 }  // namespace
 
@@ -29,6 +30,8 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     body.putBlock(key.text);
     body.put(state.iteration);
     body.put(state.generation);
+    body.put(state.leastGatherRays);
+    body.put(static_cast<std::uint8_t>(state.refined));
     body.put(state.raysOfGeneration);
     body.put(state.raysSince);
     body.put(state.causticPaths);
@@ -51,6 +54,8 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     CheckpointState state;
     state.iteration = reader.get<std::uint32_t>();
     state.generation = reader.get<std::uint32_t>();
+    state.leastGatherRays = reader.get<std::int32_t>();
+    state.refined = reader.get<std::uint8_t>() != 0;
     state.raysOfGeneration = reader.get<double>();
     state.raysSince = reader.get<double>();
     state.causticPaths = reader.get<std::uint32_t>();
@@ -59,7 +64,8 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     for (std::vector<char>* block :
          {&state.film, &state.training, &state.radii, &state.shrunk, &state.others, &state.penumbrae})
         *block = reader.getBlock<std::vector<char>>();
-    if (!reader.good()) refuseDamaged(file, kCheckpoint);
+    const bool rays = state.leastGatherRays >= 0 && state.leastGatherRays <= kMostGatherRays;
+    if (!reader.good() || !rays) refuseDamaged(file, kCheckpoint);
     return state;
 }
 

@@ -1,11 +1,15 @@
 #include "indirect_light.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <pellucid/transport/caustic_map.h>
 
 #include "cache_layers.h"
+#include "record_balance.h"
 
 namespace pellucid {
 
@@ -61,10 +65,16 @@ bool IndirectLight::due(const Pace& pace, const StageRecord& eyes) const {
     if (!view_.plan.cache || pace.iterations == 0) return view_.plan.cache;
     if (frozen_) return false;
     if (raysSince_ <= kGenerationShare * raysOfGeneration_) return false;
-    // Where little light is indirect its records may be the worse.
-    const double patience = std::clamp(kMuchIndirect / std::max(pace.film.indirectShare(), 1e-6), 1.0, kMostPatience);
-    if (raysSince_ <= kGenerationShare * patience * raysOfGeneration_) return false;
-    // Near the end of a budget a new one would not be used enough.
+    return raysSince_ > kGenerationShare * patience(pace) * raysOfGeneration_ && hasRoomForNext(pace, eyes);
+}
+
+/// Where little light is indirect its records may be the worse.
+double IndirectLight::patience(const Pace& pace) const {
+    return std::clamp(kMuchIndirect / std::max(pace.film.indirectShare(), 1e-6), 1.0, kMostPatience);
+}
+
+/// Near the end of a budget a new one would not be used enough.
+bool IndirectLight::hasRoomForNext(const Pace& pace, const StageRecord& eyes) const {
     const double asLearnt =
         eyes.seconds * raysOfGeneration_ / std::max(1.0, static_cast<double>(eyes.rays));  // if it was loaded
     const double next = std::max(secondsOfGeneration_, loaded_ ? asLearnt : 0.0) * kGenerationGrowth;
@@ -74,12 +84,52 @@ bool IndirectLight::due(const Pace& pace, const StageRecord& eyes) const {
     return !pace.budget.rays || static_cast<double>(pace.rays) + raysToUse <= static_cast<double>(*pace.budget.rays);
 }
 
+double IndirectLight::refinement(const Pace& pace, const StageRecord& eyes) const {
+    const bool own = light_.cache && light_.views == 1 && !loaded_ && !frozen_ && view_.request.cacheFile.empty();
+    if (!own || !view_.plan.growRays || light_.generation > 0 || light_.refined || pace.iterations < 2 ||
+        !std::has_single_bit(pace.iterations))
+        return 1.0;
+    RecordBalance b;
+    b.recordNoise2 = pace.film.relativeRecordNoise2();
+    b.recordRays = static_cast<double>(cacheStage_.rays);
+    b.eyeNoise2 = pace.film.relativeNoise2();
+    b.eyeRays = raysSince_;
+    b.raysLeft = pace.raysLeft(raysSince_);
+    const double untilNext = kGenerationShare * patience(pace) * raysOfGeneration_ - raysSince_;
+    if (b.raysLeft > untilNext && hasRoomForNext(pace, eyes)) b.raysLeft = std::max(0.0, untilNext);
+    return bestRefinement(b);
+}
+
+void IndirectLight::refine(double factor, const Maps& maps, RenderClock& clock, const Progress& progress) {
+    LearntLight light = light_;
+    light.cache = nullptr;
+    light.views = 0;
+    light.refined = true;
+    light.size.gatherRays = static_cast<int>(factor * light.size.gatherRays);
+    const auto cut = [&clock, &progress] { return progress.stopAsked() || clock.past(kLaterCacheShare); };
+    const std::uint64_t raysBefore = rays();
+    CacheBuild build = makeRecords(light, guide_.get(), maps, clock, cut);
+    light_.rays = light.rays += static_cast<double>(rays() - raysBefore);
+    raysOfGeneration_ = light_.rays;
+    if (cut()) return;  // whole records that are noisier rather than half of these
+    cacheStage_.records += build.cache->records().size();
+    light.cache = std::move(build.cache);
+    light.views = 1;
+    plain_ = std::move(build.plain);
+    leastRays_ = light.size.gatherRays;
+    decision_ = {"records made again", fmt::format("{} rays", leastRays_),
+                 fmt::format("those of {} rays left more noise than the eye would", light_.size.gatherRays)};
+    light_ = std::move(light);
+}
+
 LearntLight IndirectLight::nextGeneration() {
     LearntLight light = known_ ? *std::exchange(known_, std::nullopt) : LearntLight{};
     if (light.cache) return light;
     light.seed = view_.request.seed;
     light.generation = generation_;
     light.size = view_.plan.generation(generation_);
+    light.size.gatherRays = std::max(light.size.gatherRays, leastRays_);
+    light.refined = std::exchange(refined_, false);
     return light;
 }
 
@@ -99,8 +149,8 @@ void IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& 
     if (!complete && cut()) {
         if (!first) light = std::move(before);  // too late to begin
     } else if (!complete) {
-        const std::unique_ptr<const GatherGuide> guide = view_.plan.globalMap ? makeMap(light, maps) : nullptr;
-        CacheBuild build = makeRecords(light, guide.get(), maps, clock, cut);
+        guide_ = view_.plan.globalMap ? makeMap(light, maps) : nullptr;
+        CacheBuild build = makeRecords(light, guide_.get(), maps, clock, cut);
         const bool whole = !cut();
         if (whole || first) {
             cacheStage_.records += build.cache->records().size() - records;
@@ -179,6 +229,8 @@ void IndirectLight::addLayers(Image& image) const {
 
 void IndirectLight::saveTo(CheckpointState& state) const noexcept {
     state.generation = generation_;
+    state.leastGatherRays = leastRays_;
+    state.refined = light_.refined;
     state.raysOfGeneration = raysOfGeneration_;
     state.raysSince = raysSince_;
 }
@@ -187,6 +239,8 @@ void IndirectLight::restoreFrom(const CheckpointState& state, const Maps& maps, 
                                 const Progress& progress) {
     if (view_.plan.cache && state.generation > 0) {
         generation_ = state.generation - 1;
+        leastRays_ = state.leastGatherRays;
+        refined_ = state.refined;
         renew(maps, clock, progress);
     }
     raysOfGeneration_ = state.raysOfGeneration;

@@ -21,7 +21,7 @@ constexpr double kMayMiss = 0.01;
 }  // namespace
 
 std::uint64_t LearntLight::gatherSeed() const noexcept {
-    const std::uint64_t first = hashCombine(seed, kCachePass + generation);
+    const std::uint64_t first = hashCombine(seed, (refined ? kRefinedPass : kCachePass) + generation);
     return views == 0 ? first : hashCombine(first, views);
 }
 

@@ -23,6 +23,7 @@ struct LearntLight {
     std::uint32_t generation = 0;
     std::uint32_t views = 0;  ///< that have added to it
     GenerationSize size;
+    bool refined = false;                          ///< its records were made again, with more rays of the same map
     double rays = 0.0;                             ///< that it took
     std::vector<std::uint64_t> seen;               ///< hashes of the surveys that it is complete for
     std::shared_ptr<const RadianceMap> map;        ///< null: there is none

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pellucid {
 
@@ -49,6 +50,18 @@ bool Pace::finished() const {
     const bool errorGiven = budget.error || onlyError(budget);
     if (errorGiven && film.samples() >= 4 && film.relativeError() <= budget.error.value_or(kDefaultError)) return true;
     return timeCap > 0.0 && seconds >= timeCap;
+}
+
+double Pace::raysLeft(double traced) const {
+    const double perSecond = traced / std::max(1U, iterations) / std::max(1e-6, secondsOfIteration);
+    double left = std::numeric_limits<double>::infinity();
+    if (budget.seconds) left = std::min(left, (*budget.seconds - seconds) * perSecond);
+    if (budget.rays) left = std::min(left, static_cast<double>(*budget.rays) - static_cast<double>(rays));
+    if (budget.error || onlyError(budget))
+        left =
+            std::min(left, traced * (std::pow(film.relativeError() / budget.error.value_or(kDefaultError), 2.0) - 1.0));
+    if (timeCap > 0.0) left = std::min(left, (timeCap - seconds) * perSecond);
+    return std::max(0.0, left);
 }
 
 ProgressReport Pace::report(std::string_view stage) const {

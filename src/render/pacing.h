@@ -21,6 +21,9 @@ struct Pace {
     /// Of the budget that is nearest to its end, at most 1.
     [[nodiscard]] double fractionDone() const;
     [[nodiscard]] bool finished() const;
+    /// What passes that have traced so many rays since the render began may yet trace before the nearest end, about. (A number of
+    /// samples is no end here: a render that goes on to more of them must not differ from one that was asked for all.)
+    [[nodiscard]] double raysLeft(double traced) const;
     [[nodiscard]] ProgressReport report(std::string_view stage) const;
 };
 

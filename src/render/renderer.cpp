@@ -70,7 +70,11 @@ void Renderer::iterate() {
 
 /// What the eye paths of this iteration read.
 void Renderer::makeMaps() {
-    if (indirect_.due(pace(), eyes_.stage())) indirect_.renew(caustics_.maps(source_), clock_, progress_);
+    const Pace now = pace();
+    if (indirect_.due(now, eyes_.stage()))
+        indirect_.renew(caustics_.maps(source_), clock_, progress_);
+    else if (const double factor = indirect_.refinement(now, eyes_.stage()); factor > 1.0)
+        indirect_.refine(factor, caustics_.maps(source_), clock_, progress_);
     if (view_.plan.causticMap) caustics_.pass(source_, film_, iteration_);
     if (view_.plan.otherPhotons) others_.pass(iteration_);
 }
@@ -132,6 +136,7 @@ RenderResult Renderer::result(bool interrupted) const {
 RenderRecord Renderer::record() const {
     RenderRecord r;
     r.decisions = view_.plan.decisions;
+    if (indirect_.decision()) r.decisions.push_back(*indirect_.decision());
     r.causticLinks = view_.plan.causticLinks;
     caustics_.tellUse(r.causticLinks);
     r.blindSpots = view_.plan.blindSpots;

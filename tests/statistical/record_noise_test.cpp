@@ -10,6 +10,7 @@
 #include <pellucid/render/render.h>
 #include <pellucid/scene/scene.h>
 
+#include "../support/files.h"
 #include "small_scenes.h"
 
 namespace pellucid {
@@ -75,6 +76,33 @@ TEST(RecordNoise, IsPartOfTheErrorEstimate) {
         EXPECT_GT(s.noise + s.records, s.variance / (1.5 * 1.5)) << rays;
         EXPECT_LT(s.noise + s.records, s.variance * (1.5 * 1.5)) << rays;
     }
+}
+
+/// A limit of rays that leaves no time for a second generation: the first one's records get more rays of the same map. What
+/// a checkpoint brings back are those records, not the noisier ones that they replaced.
+TEST(RecordNoise, RefinesRecordsThatNoNextGenerationWillReplace) {
+    const Workers workers(2);
+    const Scene scene(roomLitByItsCeiling(), std::nullopt, SceneOptions{}, workers);
+    const test::TemporaryFolder folder;
+    RenderRequest request;
+    request.width = 64;
+    request.height = 48;
+    request.budget.rays = 1'000'000;
+    request.checkpoint = folder / "checkpoint";
+    request.pointsFolder = folder / "first";
+    const RenderResult first = render(scene, request, workers);
+    RenderRequest plain;
+    plain.width = request.width;
+    plain.height = request.height;
+    plain.budget = request.budget;
+    plain.settings.gatherRays = 128;  // what the plan begins with, and no others
+    EXPECT_LT(first.record.recordsEstimate, 0.7 * render(scene, plain, workers).record.recordsEstimate);
+    request.budget.samples = 1;  // there are more already
+    request.resume = true;
+    request.pointsFolder = folder / "again";
+    const RenderResult again = render(scene, request, workers);
+    EXPECT_TRUE(test::bytesOf(folder / "first" / "records.ply") == test::bytesOf(folder / "again" / "records.ply"));
+    EXPECT_EQ(again.record.recordsEstimate, first.record.recordsEstimate);
 }
 
 }  // namespace
