@@ -66,7 +66,7 @@ foreach(source ${sources})
     pellucid_configure(${name}_replay)
     target_link_options(${name}_replay PRIVATE $<$<BOOL:${PELLUCID_LTO}>:-fno-lto>)
     file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz/${name})
-    set(changes 1000)
+    set(changes 10000)
     if(name STREQUAL "environment") # images go through a library with threads of its own
         set(changes 200)
     endif()

@@ -31,9 +31,11 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     body.put(state.iteration);
     body.put(state.generation);
     body.put(state.leastGatherRays);
-    body.put(static_cast<std::uint8_t>(state.refined));
+    body.put(state.refinements);
+    body.put(state.recordRays);
     body.put(state.raysOfGeneration);
     body.put(state.raysSince);
+    body.put(state.raysServed);
     body.put(state.causticPaths);
     body.put(state.causticRays);
     body.put(state.causticEmitted);
@@ -55,9 +57,11 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
     state.iteration = reader.get<std::uint32_t>();
     state.generation = reader.get<std::uint32_t>();
     state.leastGatherRays = reader.get<std::int32_t>();
-    state.refined = reader.get<std::uint8_t>() != 0;
+    state.refinements = reader.get<std::uint32_t>();
+    state.recordRays = reader.get<double>();
     state.raysOfGeneration = reader.get<double>();
     state.raysSince = reader.get<double>();
+    state.raysServed = reader.get<double>();
     state.causticPaths = reader.get<std::uint32_t>();
     state.causticRays = reader.get<std::uint64_t>();
     state.causticEmitted = reader.get<std::uint64_t>();

@@ -23,8 +23,8 @@ struct CheckpointKey {
 struct CheckpointState {
     std::uint32_t iteration = 0, generation = 0;
     std::int32_t leastGatherRays = 0;
-    bool refined = false;  ///< the records of the running generation
-    double raysOfGeneration = 0.0, raysSince = 0.0;
+    std::uint32_t refinements = 0;  ///< of the running generation's records
+    double recordRays = 0.0, raysOfGeneration = 0.0, raysSince = 0.0, raysServed = 0.0;
     std::vector<char> film;
     std::vector<char> training, radii;                  ///< what guide and kernel radii have learnt
     std::uint32_t causticPaths = 0;                     ///< of an iteration to come

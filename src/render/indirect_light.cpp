@@ -1,7 +1,6 @@
 #include "indirect_light.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +20,8 @@ constexpr double kGenerationShare = 1.0;
 constexpr double kMuchIndirect = 0.25, kMostPatience = 10.0;
 /// How much longer the next generation takes, about.
 constexpr double kGenerationGrowth = 1.5;
+/// When what noise records and eye leave is looked at: after this iteration, and then every so many.
+constexpr std::uint32_t kFirstLook = 2, kLooks = 4;
 /// Of a budget of time: a cache that is not full by then stays as it is, and what it lacks is traced.
 constexpr double kCacheShare = 0.7, kLaterCacheShare = 0.9;
 
@@ -65,7 +66,7 @@ bool IndirectLight::due(const Pace& pace, const StageRecord& eyes) const {
     if (!view_.plan.cache || pace.iterations == 0) return view_.plan.cache;
     if (frozen_) return false;
     if (raysSince_ <= kGenerationShare * raysOfGeneration_) return false;
-    return raysSince_ > kGenerationShare * patience(pace) * raysOfGeneration_ && hasRoomForNext(pace, eyes);
+    return raysSince_ > kGenerationShare * patience(pace) * raysOfGeneration_ && hasRoomForNext(pace, eyes, 0.0);
 }
 
 /// Where little light is indirect its records may be the worse.
@@ -73,38 +74,36 @@ double IndirectLight::patience(const Pace& pace) const {
     return std::clamp(kMuchIndirect / std::max(pace.film.indirectShare(), 1e-6), 1.0, kMostPatience);
 }
 
-/// Near the end of a budget a new one would not be used enough.
-bool IndirectLight::hasRoomForNext(const Pace& pace, const StageRecord& eyes) const {
-    const double asLearnt =
-        eyes.seconds * raysOfGeneration_ / std::max(1.0, static_cast<double>(eyes.rays));  // if it was loaded
+/// Near the end of a budget a new one would not be used enough. `raysBefore`: of the eye, until it begins.
+bool IndirectLight::hasRoomForNext(const Pace& pace, const StageRecord& eyes, double raysBefore) const {
+    const double perRay = eyes.seconds / std::max(1.0, static_cast<double>(eyes.rays));
+    const double asLearnt = perRay * raysOfGeneration_;  // if it was loaded
     const double next = std::max(secondsOfGeneration_, loaded_ ? asLearnt : 0.0) * kGenerationGrowth;
     constexpr double kToUse = 1.0 + kGenerationShare;
-    if (pace.budget.seconds && pace.seconds + kToUse * next > *pace.budget.seconds) return false;
-    const double raysToUse = kToUse * kGenerationGrowth * raysOfGeneration_;
+    if (pace.budget.seconds && pace.seconds + perRay * raysBefore + kToUse * next > *pace.budget.seconds) return false;
+    const double raysToUse = raysBefore + kToUse * kGenerationGrowth * raysOfGeneration_;
     return !pace.budget.rays || static_cast<double>(pace.rays) + raysToUse <= static_cast<double>(*pace.budget.rays);
 }
 
 double IndirectLight::refinement(const Pace& pace, const StageRecord& eyes) const {
     const bool own = light_.cache && light_.views == 1 && !loaded_ && !frozen_ && view_.request.cacheFile.empty();
-    if (!own || !view_.plan.growRays || light_.generation > 0 || light_.refined || pace.iterations < 2 ||
-        !std::has_single_bit(pace.iterations))
-        return 1.0;
+    if (!own || !view_.plan.growRays || (pace.iterations != kFirstLook && pace.iterations % kLooks != 0)) return 1.0;
     RecordBalance b;
     b.recordNoise2 = pace.film.relativeRecordNoise2();
-    b.recordRays = static_cast<double>(cacheStage_.rays);
+    b.recordRays = recordRays_;
     b.eyeNoise2 = pace.film.relativeNoise2();
-    b.eyeRays = raysSince_;
-    b.raysLeft = pace.raysLeft(raysSince_);
-    const double untilNext = kGenerationShare * patience(pace) * raysOfGeneration_ - raysSince_;
-    if (b.raysLeft > untilNext && hasRoomForNext(pace, eyes)) b.raysLeft = std::max(0.0, untilNext);
-    return bestRefinement(b);
+    b.eyeRays = raysServed_;
+    b.raysLeft = pace.raysLeft(raysServed_);
+    const double untilNext = std::max(0.0, kGenerationShare * patience(pace) * raysOfGeneration_ - raysSince_);
+    if (b.raysLeft > untilNext && hasRoomForNext(pace, eyes, untilNext)) b.raysLeft = untilNext;
+    return std::max(1.0, raysOfBetterRecords(b) / std::max(1.0, recordRaysOfGeneration_));
 }
 
 void IndirectLight::refine(double factor, const Maps& maps, RenderClock& clock, const Progress& progress) {
     LearntLight light = light_;
     light.cache = nullptr;
     light.views = 0;
-    light.refined = true;
+    ++light.refinements;
     light.size.gatherRays = static_cast<int>(factor * light.size.gatherRays);
     const auto cut = [&clock, &progress] { return progress.stopAsked() || clock.past(kLaterCacheShare); };
     const std::uint64_t raysBefore = rays();
@@ -129,7 +128,7 @@ LearntLight IndirectLight::nextGeneration() {
     light.generation = generation_;
     light.size = view_.plan.generation(generation_);
     light.size.gatherRays = std::max(light.size.gatherRays, leastRays_);
-    light.refined = std::exchange(refined_, false);
+    light.refinements = std::exchange(refinements_, 0);
     return light;
 }
 
@@ -196,7 +195,10 @@ CacheBuild IndirectLight::makeRecords(const LearntLight& light, const GatherGuid
     CacheBuild build = buildCache(view_.context(ofGather), view_.survey, view_.camera.width(), view_.plan, light.size,
                                   light.gatherSeed(), guide, view_.workers, cut,
                                   light.cache ? std::make_unique<IrradianceCache>(*light.cache) : nullptr, light.views);
-    cacheStage_.rays += view_.pixels.ofWholeImage(build.rays);
+    const std::uint64_t rays = view_.pixels.ofWholeImage(build.rays);
+    cacheStage_.rays += rays;
+    recordRaysOfGeneration_ = static_cast<double>(rays);
+    recordRays_ += recordRaysOfGeneration_;
     return build;
 }
 
@@ -230,9 +232,11 @@ void IndirectLight::addLayers(Image& image) const {
 void IndirectLight::saveTo(CheckpointState& state) const noexcept {
     state.generation = generation_;
     state.leastGatherRays = leastRays_;
-    state.refined = light_.refined;
+    state.refinements = light_.refinements;
+    state.recordRays = recordRays_;
     state.raysOfGeneration = raysOfGeneration_;
     state.raysSince = raysSince_;
+    state.raysServed = raysServed_;
 }
 
 void IndirectLight::restoreFrom(const CheckpointState& state, const Maps& maps, RenderClock& clock,
@@ -240,11 +244,13 @@ void IndirectLight::restoreFrom(const CheckpointState& state, const Maps& maps, 
     if (view_.plan.cache && state.generation > 0) {
         generation_ = state.generation - 1;
         leastRays_ = state.leastGatherRays;
-        refined_ = state.refined;
+        refinements_ = state.refinements;
         renew(maps, clock, progress);
     }
+    recordRays_ = state.recordRays;
     raysOfGeneration_ = state.raysOfGeneration;
     raysSince_ = state.raysSince;
+    raysServed_ = state.raysServed;
 }
 
 }  // namespace pellucid

@@ -43,13 +43,16 @@ public:
     /// Makes it: fresh global photons and fresh records, with an error bound that tightens; or what is known, and more of it.
     /// `maps`: those of the caustic side. A budget of time cuts it short, and so does `progress`.
     void renew(const Maps& maps, RenderClock& clock, const Progress& progress);
-    /// How many times as many gather rays the first generation's records should have had, by what noise they and the eye
-    /// leave; 1: as they are. Asked before an iteration that makes no new generation.
+    /// How many times as many gather rays the running generation's records should have had, by what noise they and the eye
+    /// leave in the image; 1: as they are. Asked before an iteration that makes no new generation.
     [[nodiscard]] double refinement(const Pace& pace, const StageRecord& eyes) const;
     /// Makes the running generation's records anew, with so many times as many gather rays of the same map.
     void refine(double factor, const Maps& maps, RenderClock& clock, const Progress& progress);
-    /// Eye rays that the running generation has served.
-    void served(std::uint64_t rays) noexcept { raysSince_ += static_cast<double>(rays); }
+    /// Tells it of eye rays that the running generation has served.
+    void served(std::uint64_t rays) noexcept {
+        raysSince_ += static_cast<double>(rays);
+        raysServed_ += static_cast<double>(rays);
+    }
 
     /// What was decided on the way, beyond the plan.
     [[nodiscard]] const std::optional<Decision>& decision() const noexcept { return decision_; }
@@ -76,7 +79,7 @@ private:
     void useFrozen();
     [[nodiscard]] LearntLight nextGeneration();
     [[nodiscard]] double patience(const Pace& pace) const;
-    [[nodiscard]] bool hasRoomForNext(const Pace& pace, const StageRecord& eyes) const;
+    [[nodiscard]] bool hasRoomForNext(const Pace& pace, const StageRecord& eyes, double raysBefore) const;
     [[nodiscard]] std::unique_ptr<const GatherGuide> makeMap(LearntLight& light, const Maps& maps);
     [[nodiscard]] CacheBuild makeRecords(const LearntLight& light, const GatherGuide* guide, const Maps& maps,
                                          RenderClock& clock, const std::function<bool()>& cut);
@@ -93,8 +96,9 @@ private:
     ReuseReport reuse_;
     std::uint32_t generation_ = 0;  ///< the next one's number
     int leastRays_ = 0;             ///< gather rays that its records have at least
-    bool refined_ = false;  ///< its records are the refined ones at once: it is made again for a render that goes on
-    double raysOfGeneration_ = 0.0, raysSince_ = 0.0, secondsOfGeneration_ = 0.0;
+    double recordRays_ = 0.0, recordRaysOfGeneration_ = 0.0;
+    std::uint32_t refinements_ = 0;  ///< its records are these at once: it is made again for a render that goes on
+    double raysOfGeneration_ = 0.0, raysSince_ = 0.0, raysServed_ = 0.0, secondsOfGeneration_ = 0.0;
     StageRecord globalStage_{"global photons"}, cacheStage_{"irradiance cache"};
 };
 

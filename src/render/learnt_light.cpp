@@ -21,7 +21,8 @@ constexpr double kMayMiss = 0.01;
 }  // namespace
 
 std::uint64_t LearntLight::gatherSeed() const noexcept {
-    const std::uint64_t first = hashCombine(seed, (refined ? kRefinedPass : kCachePass) + generation);
+    const std::uint64_t pass = refinements == 0 ? kCachePass : hashCombine(kRefinedPass, refinements);
+    const std::uint64_t first = hashCombine(seed, pass + generation);
     return views == 0 ? first : hashCombine(first, views);
 }
 

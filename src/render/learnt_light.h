@@ -23,10 +23,10 @@ struct LearntLight {
     std::uint32_t generation = 0;
     std::uint32_t views = 0;  ///< that have added to it
     GenerationSize size;
-    bool refined = false;                          ///< its records were made again, with more rays of the same map
-    double rays = 0.0;                             ///< that it took
-    std::vector<std::uint64_t> seen;               ///< hashes of the surveys that it is complete for
-    std::shared_ptr<const RadianceMap> map;        ///< null: there is none
+    std::uint32_t refinements = 0;           ///< its records were made again so often, with more rays of the same map
+    double rays = 0.0;                       ///< that it took
+    std::vector<std::uint64_t> seen;         ///< hashes of the surveys that it is complete for
+    std::shared_ptr<const RadianceMap> map;  ///< null: there is none
     std::shared_ptr<const IrradianceCache> cache;  ///< null: nothing is learnt yet
 
     /// Differs by generation and by the number of views before: no two views gather with the same numbers.

@@ -12,15 +12,15 @@ constexpr double kMostOfVariance = 0.85, kMostRefinement = 8.0;
 
 }  // namespace
 
-double bestRefinement(const RecordBalance& b) noexcept {
-    if (!(b.recordRays > 0.0) || !(b.recordNoise2 > 0.0)) return 1.0;
+double raysOfBetterRecords(const RecordBalance& b) noexcept {
+    if (!(b.recordRays > 0.0) || !(b.recordNoise2 > 0.0)) return 0.0;
     const double record = b.recordNoise2 * b.recordRays, eye = b.eyeNoise2 * b.eyeRays;
     const double rays = b.eyeRays + b.raysLeft;
     const double best = rays * std::sqrt(record) / (std::sqrt(record) + std::sqrt(eye));
     const double made = std::min({best, kMostRefinement * b.recordRays, b.raysLeft});
-    if (made <= b.recordRays) return 1.0;
+    if (made <= b.recordRays) return 0.0;
     const double asIs = b.recordNoise2 + eye / rays, then = record / made + eye / (rays - made);
-    return then < kMostOfVariance * asIs ? made / b.recordRays : 1.0;
+    return then < kMostOfVariance * asIs ? made : 0.0;
 }
 
 }  // namespace pellucid

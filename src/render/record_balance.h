@@ -10,8 +10,8 @@ struct RecordBalance {
     double raysLeft = 0.0;                       ///< that may yet be traced while these records serve
 };
 
-/// How many times as many rays the records should have, if they are made anew: with a = noise^2 x rays of each side, the sum
-/// a_r / x + a_e / y is least at x : y = sqrt(a_r) : sqrt(a_e). 1 where that would not lower it by much.
-[[nodiscard]] double bestRefinement(const RecordBalance& balance) noexcept;
+/// The rays that records made anew should have: with a = noise^2 x rays of each side, the sum a_r / x + a_e / y is least at
+/// x : y = sqrt(a_r) : sqrt(a_e). 0 where that would not lower it by much.
+[[nodiscard]] double raysOfBetterRecords(const RecordBalance& balance) noexcept;
 
 }  // namespace pellucid
