@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
         {"goblet", scenes::goblet},
         {"pool", scenes::pool},
         {"prism-spot", scenes::prismSpot},
+        {"rainbow", scenes::rainbow},
         {"lens-point", scenes::lensPoint},
         {"ring", scenes::ring},
         {"rough-metal", scenes::roughMetal},

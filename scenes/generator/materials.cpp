@@ -43,6 +43,11 @@ Json dielectric(const std::string& name, double ior, double roughness) {
               {"KHR_materials_volume", {{"thicknessFactor", 1.0}}}}}};
 }
 
+Json dispersing(Json material, double abbe) {
+    material["extensions"]["KHR_materials_dispersion"] = {{"dispersion", 20.0 / abbe}};
+    return material;
+}
+
 Json absorbing(Json material, const glm::dvec3& color, double distance) {
     Json& volume = material["extensions"]["KHR_materials_volume"];
     volume["attenuationColor"] = toJson(color);

@@ -17,6 +17,8 @@ namespace scenes {
 [[nodiscard]] Json metal(const std::string& name, const glm::dvec3& color, double roughness);
 /// Closed dielectric body that refracts; roughness 0 is an exact delta lobe.
 [[nodiscard]] Json dielectric(const std::string& name, double ior, double roughness = 0.0);
+/// The same with an Abbe number: its ior is that at 587.6 nm.
+[[nodiscard]] Json dispersing(Json material, double abbe);
 /// The same with Beer's absorption: `color` is left of white light after `distance` metres.
 [[nodiscard]] Json absorbing(Json material, const glm::dvec3& color, double distance);
 

@@ -12,6 +12,7 @@ namespace scenes {
 
 // Lights that no camera path can hit: scenes_blind.cpp
 [[nodiscard]] GlbWriter prismSpot();
+[[nodiscard]] GlbWriter rainbow();
 [[nodiscard]] GlbWriter lensPoint();
 
 // Metal: scenes_metal.cpp

@@ -59,6 +59,34 @@ GlbWriter prismSpot() {
     return scene;
 }
 
+/// Heavy flint behind a slit: a thread of sunlight along +x falls apart into its colours on the screen, near its least
+/// deviation of 58.6 degrees. The sun is far and the slit narrow: hardly a photon would find it without guide.
+GlbWriter rainbow() {
+    GlbWriter scene("rainbow");
+    const auto table = scene.addMaterial(lambert("table", {0.42, 0.40, 0.38}));
+    const auto screen = scene.addMaterial(lambert("screen", {0.80, 0.80, 0.78}));
+    const auto flint = scene.addMaterial(dispersing(dielectric("flint", 1.72), 28.0));
+    const auto plate = scene.addMaterial(lambert("plate", {0.10, 0.11, 0.13}));
+    const auto fill = scene.addMaterial(lamp("fill", {3.4, 3.7, 4.2}));
+    scene.add("table", withoutUvs(floorQuad({0.0, 0.0, 0.0}, 1.6, 1.2)), table);
+    scene.add("screen", withoutUvs(quad({-0.8, 0.0, -0.6}, {1.6, 0.0, 0.0}, {0.0, 0.6, 0.0})), screen);
+    scene.add("side", withoutUvs(quad({0.8, 0.0, -0.6}, {0.0, 0.0, 1.2}, {0.0, 0.6, 0.0})), screen);
+
+    // Before the turn the beam heads 29.3 degrees to the right of +x and meets the left face at 59.3 degrees.
+    const double apex = 0.16 / std::sqrt(3.0), turn = 29.3;
+    scene.add("prism",
+              extrusion(turnedLeft({{0.0, -apex}, {0.08, 0.5 * apex}, {-0.08, 0.5 * apex}}, turn), 0.001, 0.22), flint);
+    const double slit = -turnedLeft({{-0.04, -0.25 * apex}}, turn).front().y, half = 0.004, x = -0.3;
+    scene.add("plate", withoutUvs(box({x - 0.01, 0.0, -0.6}, {x, 0.6, slit - half})), plate);
+    scene.add("plate", withoutUvs(box({x - 0.01, 0.0, slit + half}, {x, 0.6, 1.2})), plate);
+    scene.add("sill", withoutUvs(box({x - 0.01, 0.0, slit - half}, {x, 0.05, slit + half})), plate);
+    scene.add("lintel", withoutUvs(box({x - 0.01, 0.18, slit - half}, {x, 0.6, slit + half})), plate);
+    scene.addLight({{"name", "sun"}, {"type", "directional"}, {"intensity", 60.0}}, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0});
+    scene.add("fill", withoutUvs(ceilingQuad({0.0, 1.1, 0.3}, 0.4, 0.4)), fill);
+    scene.addCamera("camera", {{0.12, 0.42, 0.75}, {0.17, 0.10, -0.3}, 40.0, 4.0 / 3.0});
+    return scene;
+}
+
 namespace {
 
 constexpr double kLensAperture = 0.04, kLensRadius = 0.062, kLensEdge = 0.002;

@@ -169,6 +169,8 @@ private:
             texture(useOf(transmission, "transmissionTexture"), false, "transmissionTexture");
         const double ior = numberOr(extension("KHR_materials_ior"), "ior", 1.5);
         material_.ior = ior == 0.0 ? 0.0F : within(ior, 1.0, 1e3, "ior");
+        material_.dispersion =
+            within(numberOr(extension("KHR_materials_dispersion"), "dispersion", 0.0), 0.0, 1e3, "dispersion");
     }
 
     void readSpecular() {

@@ -101,6 +101,7 @@ constexpr Rule kTransmission[] = {
     {.key = "transmissionTexture", .kind = Object, .members = kTextureInfo},
 };
 constexpr Rule kIor[] = {{.key = "ior", .kind = Number}};
+constexpr Rule kDispersion[] = {{.key = "dispersion", .kind = Number}};
 constexpr Rule kVolume[] = {
     {.key = "thicknessFactor", .kind = Number},
     {.key = "thicknessTexture", .kind = Object, .members = kTextureInfo},
@@ -117,6 +118,7 @@ constexpr Rule kEmissiveStrength[] = {{.key = "emissiveStrength", .kind = Number
 constexpr Rule kMaterialExtensions[] = {
     {.key = "KHR_materials_transmission", .kind = Object, .members = kTransmission},
     {.key = "KHR_materials_ior", .kind = Object, .members = kIor},
+    {.key = "KHR_materials_dispersion", .kind = Object, .members = kDispersion},
     {.key = "KHR_materials_volume", .kind = Object, .members = kVolume},
     {.key = "KHR_materials_specular", .kind = Object, .members = kSpecular},
     {.key = "KHR_materials_emissive_strength", .kind = Object, .members = kEmissiveStrength},
@@ -234,10 +236,18 @@ constexpr Rule kRoot[] = {
 };
 // clang-format on
 
-constexpr std::array<std::string_view, 11> kKnownExtensions{
-    "KHR_lights_punctual",    "KHR_materials_transmission",      "KHR_materials_ior",   "KHR_materials_volume",
-    "KHR_materials_specular", "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_texture_transform",
-    "KHR_mesh_quantization",  "EXT_mesh_gpu_instancing",         "EXT_texture_webp"};
+constexpr std::array<std::string_view, 12> kKnownExtensions{"KHR_lights_punctual",
+                                                            "KHR_materials_transmission",
+                                                            "KHR_materials_ior",
+                                                            "KHR_materials_volume",
+                                                            "KHR_materials_dispersion",
+                                                            "KHR_materials_specular",
+                                                            "KHR_materials_emissive_strength",
+                                                            "KHR_materials_unlit",
+                                                            "KHR_texture_transform",
+                                                            "KHR_mesh_quantization",
+                                                            "EXT_mesh_gpu_instancing",
+                                                            "EXT_texture_webp"};
 
 }  // namespace
 

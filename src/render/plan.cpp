@@ -70,6 +70,25 @@ void planEyePaths(Plan& plan, const Scene& scene, const RenderRequest& request) 
                s.adaptive != "auto");
 }
 
+/// What materials and lights alone switch on.
+void planScene(Plan& plan, const Scene& scene) {
+    const SurfaceModel& surfaces = scene.surfaces();
+    std::size_t absorb = 0, disperse = 0;
+    for (std::uint32_t m = 0; m < surfaces.materials().size(); ++m) {
+        const Material& material = surfaces.materials()[m];
+        if (material.transmission > 0.0F && material.thickness > 0.0F && !isBlack(material.absorption)) ++absorb;
+        if (surfaces.disperses(m)) ++disperse;
+    }
+    const bool sky = scene.environment() != nullptr;
+    decide(plan, "environment sampling", sky ? "on" : "off",
+           sky ? "directions by its radiance and by the cosine" : "the scene has no environment");
+    decide(plan, "absorption in glass", absorb > 0 ? "on" : "off",
+           fmt::format("{} material{} of bodies that absorb", absorb, absorb == 1 ? "" : "s"));
+    decide(plan, "dispersion", disperse > 0 ? "on" : "off",
+           fmt::format("{} material{} of smooth glass with a dispersion{}", disperse, disperse == 1 ? "" : "s",
+                       disperse > 0 ? ": chains over it have one wavelength each" : ""));
+}
+
 /// Which classes the method cannot see: no sampler of its makes such a path.
 void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request) {
     const std::size_t delta = pointLikeLights(scene.lights());
@@ -167,6 +186,7 @@ Plan makePlan(const Scene& scene, const Camera& camera, const RenderRequest& req
         for (CausticLink& link : plan.causticLinks)
             if (link.reason == kNoPilotPath) link.reason = "no photons: eye paths carry it, as the caustic map is off";
     planEyePaths(plan, scene, request);
+    planScene(plan, scene);
     findBlindSpots(plan, scene, request);
     const Budget& b = request.budget;
     if (!b.seconds && !b.samples && !b.rays) {

@@ -61,6 +61,7 @@ public:
         add(m.alphaMode), add(m.alphaCutoff), add(m.doubleSided), add(m.ior);
         add(m.specular), add(m.specularTexture), add(m.specularColor), add(m.specularColorTexture);
         add(m.transmission), add(m.transmissionTexture), add(m.thickness), add(m.absorption);
+        add(m.dispersion);
     }
     void add(const PunctualLight& l) noexcept {
         add(l.kind), add(l.position), add(l.direction), add(l.intensity), add(l.innerCone), add(l.outerCone);

@@ -13,7 +13,8 @@ namespace {
 
 /// Whether light crosses from one body to the other as within one.
 [[nodiscard]] bool sameGlass(const Material& a, const Material& b) noexcept {
-    return a.ior == b.ior && a.absorption == b.absorption && a.transmission >= 1.0F && b.transmission >= 1.0F;
+    return a.ior == b.ior && a.dispersion == b.dispersion && a.absorption == b.absorption && a.transmission >= 1.0F &&
+           b.transmission >= 1.0F;
 }
 
 }  // namespace

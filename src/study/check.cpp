@@ -30,6 +30,7 @@ const std::vector<CheckCase>& checkCases() {
         check::addSkies(list);
         check::addFlatMirrors(list);
         check::addSlabs(list);
+        check::addDispersion(list);
         check::addCurvedMirrors(list);
         check::addLenses(list);
         check::addKernels(list);

@@ -15,6 +15,7 @@ void addSkies(Cases& cases);             ///< 10 to 12: walls and skies, gradien
 void addFlatMirrors(Cases& cases);       ///< 13, 14, 28
 void addCurvedMirrors(Cases& cases);     ///< 18, 19, 23
 void addSlabs(Cases& cases);             ///< 15, 16, 17, 24
+void addDispersion(Cases& cases);        ///< glass by wavelength
 void addLenses(Cases& cases);            ///< 20 to 22, a lamp inside glass
 void addKernels(Cases& cases);           ///< 25 to 27, on synthetic photons
 void addMonteCarlo(Cases& cases);        ///< the lecture's claims

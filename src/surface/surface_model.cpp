@@ -157,12 +157,20 @@ glm::vec3 bentNormal(const glm::vec3& n, const glm::vec3& g, const glm::vec3& wo
     return best;
 }
 
-Lobe dielectric(const Material& m, const Resolved& r, float weight, bool backSide, const LobeRules& rules) noexcept {
+Lobe dielectric(const Material& m, const Resolved& r, float weight, bool backSide, Wave wave,
+                const LobeRules& rules) noexcept {
     const float alpha = alphaOf(r.roughness, rules);
     const bool smooth = alpha == 0.0F || turnsLittle(m, alpha);
-    DielectricLobe lobe{r.baseColor, m.ior, smooth ? 0.0F : alpha, r.specular, !isVolume(m)};
-    if (isVolume(m) && backSide && m.ior > 0.0F) lobe.eta = 1.0F / m.ior;
+    const float ior = smooth && isVolume(m) && m.ior > 0.0F ? iorAt(m.ior, m.dispersion, wave) : m.ior;
+    DielectricLobe lobe{r.baseColor, ior, smooth ? 0.0F : alpha, r.specular, !isVolume(m)};
+    if (isVolume(m) && backSide && ior > 0.0F) lobe.eta = 1.0F / ior;
     return {lobe, weight, 0.0F, smooth ? kSpecular : transmittingKind(m, r.roughness, rules), smooth};
+}
+
+bool dispersesIn(const Material& m, const LobeRules& rules) noexcept {
+    if (!(m.dispersion > 0.0F && m.transmission > 0.0F && isVolume(m) && m.ior > 1.0F)) return false;
+    const float alpha = alphaOf(m.roughness, rules);
+    return m.metallicRoughnessTexture || alpha == 0.0F || turnsLittle(m, alpha);
 }
 
 /// Every kind of facet lobe that the material's roughness can take.
@@ -190,6 +198,7 @@ LobeKinds kindsOf(const Material& m, const LobeRules& rules) noexcept {
 struct SurfaceModel::Prepared {
     LobeKinds kinds = kNoLobe;
     bool textured = false;  ///< any texture that changes the lobes
+    bool disperses = false;
     std::size_t table = 0;  ///< of the coat's ior
     Resolved factors;
     CoatTerms coat;  ///< of the factors alone
@@ -203,6 +212,7 @@ SurfaceModel::SurfaceModel(const std::vector<Material>& materials, const LobeRul
         p.kinds = kindsOf(m, rules_);
         p.textured = m.baseColorTexture || m.metallicRoughnessTexture || m.specularTexture || m.specularColorTexture ||
                      m.transmissionTexture;
+        p.disperses = dispersesIn(m, rules_);
         p.factors = resolveFactors(m);
         const bool opaqueDielectric =
             (m.metallic < 1.0F || m.metallicRoughnessTexture) && (m.transmission < 1.0F || m.transmissionTexture);
@@ -220,13 +230,15 @@ SurfaceModel& SurfaceModel::operator=(SurfaceModel&&) noexcept = default;
 
 LobeKinds SurfaceModel::possibleKinds(std::uint32_t material) const noexcept { return prepared_[material].kinds; }
 
+bool SurfaceModel::disperses(std::uint32_t material) const noexcept { return prepared_[material].disperses; }
+
 bool SurfaceModel::mapsDiffuseNormals() const noexcept {
     for (std::size_t i = 0; i < prepared_.size(); ++i)
         if ((*materials_)[i].normalTexture && (prepared_[i].kinds & kDiffuse) != kNoLobe) return true;
     return false;
 }
 
-Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo) const noexcept {
+Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo, Wave wave) const noexcept {
     const Material& m = (*materials_)[point.material];
     const Prepared& prepared = prepared_[point.material];
     Resolved r = prepared.textured ? resolve(m, point) : prepared.factors;
@@ -253,7 +265,7 @@ Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo) const no
         const float alpha = alphaOf(r.roughness, rules_);
         result.add({ConductorLobe{r.baseColor, alpha}, metal, 0.0F, facetKind(r.roughness, rules_), alpha == 0.0F}, wo);
     }
-    if (glass > 0.0F) result.add(dielectric(m, r, glass, backSide, rules_), wo);
+    if (glass > 0.0F) result.add(dielectric(m, r, glass, backSide, wave, rules_), wo);
     return result;
 }
 

@@ -44,7 +44,7 @@ LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sample
         const std::uint64_t dimension = kEyeDimensions + kDimensionsPerVertex * eye_.vertices().size();
         eye.setDimension(dimension + kCoin);
         ++rays_;
-        if (!eye_.advance(eye.next1D())) {
+        if (!eye_.advance(eye.next1D(), eye)) {
             if (countsLamps()) sum.add(eye_.string(), eye_.escaped());
             return sum;
         }
@@ -55,7 +55,7 @@ LayeredRadiance Bidirectional::sample(const Ray& cameraRay, Sampler& eye, Sample
         const std::size_t depth = eye_.vertices().size(), limit = static_cast<std::size_t>(rules_.maxDepth);
         if (splitLampChains_ && eye_.deltaChain() && !lampsFollowed && (limit == 0 || depth <= limit)) {
             lampsFollowed = lampChains_.follow({z.hit, z.bsdf, z.toPrevious, z.throughput, z.absorption,
-                                                eye_.etaScale(), z.before, static_cast<int>(depth)},
+                                                eye_.etaScale(), z.before, static_cast<int>(depth), eye_.wave()},
                                                eye, sum);
         }
         eye.setDimension(dimension + kConnectChoice);
@@ -78,7 +78,7 @@ void Bidirectional::traceLight(Sampler& sampler, std::vector<LightSplat>& splats
         const std::uint64_t dimension = kLightDimensions + kDimensionsPerVertex * light_.vertices().size();
         sampler.setDimension(dimension + kCoin);
         ++rays_;
-        if (!light_.advance(sampler.next1D())) return;
+        if (!light_.advance(sampler.next1D(), sampler)) return;
         sampler.setDimension(dimension + kConnectPoint);
         const glm::vec2 lens = sampler.next2D();
         const std::size_t depth = light_.vertices().size();

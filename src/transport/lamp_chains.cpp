@@ -4,6 +4,7 @@
 
 #include "medium.h"
 #include "roulette.h"
+#include "wavelength.h"
 
 namespace pellucid {
 
@@ -34,6 +35,7 @@ void LampChains::branchOff(const ChainVertex& vertex, const DeltaBranches& branc
         b.path = vertex.path;
         b.path.pass(way.kind);
         b.vertices = vertex.vertices;
+        b.wave = vertex.wave;
         waiting_.push_back(b);
     }
 }
@@ -46,7 +48,7 @@ bool LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadi
     waiting_.clear();
     branchOff(vertex, first, sampler);
     while (!waiting_.empty()) {
-        const Branch b = waiting_.back();
+        Branch b = waiting_.back();
         waiting_.pop_back();
         ++rays_;
         const auto hit = scene_.intersect(b.ray, scene_.hasHoles() ? sampler.next1D() : 0.0F);
@@ -56,14 +58,15 @@ bool LampChains::follow(const ChainVertex& vertex, Sampler& sampler, LayeredRadi
             continue;
         }
         const glm::vec3 wo = -b.ray.direction;
-        const Bsdf bsdf = scene_.surfaces().bsdf(hit->point, wo);
+        if (wavelength::isDue(scene_, hit->point, b.wave)) b.throughput *= wavelength::choose(b.wave, sampler);
+        const Bsdf bsdf = scene_.surfaces().bsdf(hit->point, wo, b.wave);
         const Rgb absorption = medium::beforeHit(scene_, hit->point, bsdf, b.absorption);
         const Rgb throughput = b.throughput * medium::transmittance(absorption, hit->distance);
         const Rgb emitted = scene_.surfaces().emittedRadiance(hit->point, wo);
         if (!isBlack(emitted)) sum.add(b.path, throughput * emitted);
         const int vertices = b.vertices + 1;
         if ((bsdf.kinds() & (kSpecular | kGlossy)) != kNoLobe && (maxDepth_ == 0 || vertices <= maxDepth_))
-            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.path, vertices},
+            branchOff({*hit, bsdf, wo, throughput, absorption, b.etaScale, b.path, vertices, b.wave},
                       bsdf.deltaBranches(wo, TransportMode::Radiance), sampler);
     }
     return true;

@@ -13,6 +13,7 @@
 
 #include "medium.h"
 #include "roulette.h"
+#include "wavelength.h"
 
 namespace pellucid::light_path {
 
@@ -27,6 +28,7 @@ struct LightPath {
     Rgb flux{0.0F};
     Rgb absorption{0.0F};
     int vertices = 0;
+    Wave wave = {};  ///< of this chain of delta lobes
     EnergyBalance energy = {};
     /// What the flux that the next scattering takes away goes to.
     double EnergyBalance::*sink = &EnergyBalance::absorbed;
@@ -46,7 +48,9 @@ struct Arrival {
 
 /// The next vertex of a light path, with absorption applied. Empty: it escaped or grazes.
 [[nodiscard]] inline std::optional<Arrival> arrive(const Scene& scene, LightPath& path, Sampler& sampler) noexcept {
-    sampler.setDimension(kEmissionDimensions + kDimensionsPerVertex * static_cast<std::uint64_t>(path.vertices));
+    const std::uint64_t dimension =
+        kEmissionDimensions + kDimensionsPerVertex * static_cast<std::uint64_t>(path.vertices);
+    sampler.setDimension(dimension);
     const auto hit = scene.intersect(path.ray, scene.hasHoles() ? sampler.next1D() : 0.0F);
     if (!hit) {
         path.energy.escaped += path.watts();
@@ -54,7 +58,14 @@ struct Arrival {
     }
     ++path.vertices;
     const glm::vec3 wi = -path.ray.direction;
-    const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wi);
+    if (wavelength::isDue(scene, hit->point, path.wave)) {
+        path.energy.roulette += path.watts();
+        sampler.setDimension(wavelength::kDimension + static_cast<std::uint64_t>(path.vertices));
+        path.flux *= wavelength::choose(path.wave, sampler);
+        sampler.setDimension(dimension + (scene.hasHoles() ? 1U : 0U));
+        path.energy.roulette -= path.watts();
+    }
+    const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wi, path.wave);
     path.absorption = medium::beforeHit(scene, hit->point, bsdf, path.absorption);
     if (!isBlack(path.absorption)) {
         path.energy.absorbed += path.watts();
@@ -78,6 +89,7 @@ struct Arrival {
     path.energy.*path.sink += path.watts();
     if (!sample) return false;
     if (by != nullptr) *by = sample->kind;
+    if (!sample->delta) path.wave = {};
     const float shadingOut = std::fabs(glm::dot(sample->wi, a.bsdf.shadingNormal()));
     const float geometricOut = std::fabs(glm::dot(sample->wi, a.bsdf.geometricNormal()));
     if (!(shadingOut > 0.0F)) return false;

@@ -8,6 +8,7 @@
 #include <pellucid/math/sampler.h>
 
 #include "medium.h"
+#include "wavelength.h"
 
 namespace pellucid {
 
@@ -25,13 +26,20 @@ void look(const Scene& scene, const Camera& camera, std::uint32_t pixel, Sampler
     Ray ray = camera.ray(corner + jitter, lens).ray;
     Rgb throughput(1.0F), absorption(0.0F);
     float etaScale = 1.0F;
+    Wave wave;
     for (int vertex = 0; vertex < kLongestChain; ++vertex) {
-        sampler.setDimension(kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(vertex));
+        const std::uint64_t dimension = kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(vertex);
+        sampler.setDimension(dimension);
         ++seen.rays;
         const auto hit = scene.intersect(ray, sampler.next1D());
         if (!hit) return;
         const glm::vec3 wo = -ray.direction;
-        const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wo);
+        if (wavelength::isDue(scene, hit->point, wave)) {
+            sampler.setDimension(wavelength::kDimension + static_cast<std::uint64_t>(vertex));
+            throughput *= wavelength::choose(wave, sampler);
+            sampler.setDimension(dimension + 1);
+        }
+        const Bsdf bsdf = scene.surfaces().bsdf(hit->point, wo, wave);
         absorption = medium::beforeHit(scene, hit->point, bsdf, absorption);
         throughput *= medium::transmittance(absorption, hit->distance);
         if (vertex > 0 && (bsdf.kinds() & kDiffuse) != kNoLobe) {
@@ -44,6 +52,7 @@ void look(const Scene& scene, const Camera& camera, std::uint32_t pixel, Sampler
         const float choose = sampler.next1D();
         const auto next = bsdf.sample(wo, choose, sampler.next2D(), kSpecular, TransportMode::Radiance);
         if (!next) return;
+        if (!next->delta) wave = {};
         throughput *= next->weight;
         etaScale *= next->etaScale;
         const float survive = std::min(vertex > 64 ? 0.95F : 1.0F, maxComponent(throughput) * etaScale);

@@ -6,6 +6,7 @@
 #include "kind_choice.h"
 #include "medium.h"
 #include "roulette.h"
+#include "wavelength.h"
 
 namespace pellucid {
 
@@ -17,9 +18,11 @@ constexpr float kLeastCosine = 1e-7F;
 [[nodiscard]] float cosine(const glm::vec3& a, const glm::vec3& b) noexcept { return std::fabs(glm::dot(a, b)); }
 
 /// pdf(back) / pdf(onward) of a delta lobe: the inverse of how much it spreads solid angle. Snell: n^2 cos dw is kept.
-[[nodiscard]] double deltaPdfRatio(const Scene& scene, const PathVertex& v, const BsdfSample& sample) noexcept {
+[[nodiscard]] double deltaPdfRatio(const Scene& scene, const PathVertex& v, const BsdfSample& sample,
+                                   Wave wave) noexcept {
     if (!sample.transmitted || !v.bsdf.bordersVolume()) return 1.0;
-    const auto ior = static_cast<double>(scene.surfaces().materials()[v.hit.point.material].ior);
+    const Material& m = scene.surfaces().materials()[v.hit.point.material];
+    const auto ior = static_cast<double>(iorAt(m.ior, m.dispersion, wave));
     const double eta = v.bsdf.backSide() ? 1.0 / ior : ior;
     const auto in = static_cast<double>(cosine(v.toPrevious, v.bsdf.shadingNormal()));
     const auto out = static_cast<double>(cosine(sample.wi, v.bsdf.shadingNormal()));
@@ -35,6 +38,7 @@ void Subpath::begin(const Ray& ray, const Rgb& throughput) noexcept {
     throughput_ = throughput;
     absorption_ = Rgb(0.0F);
     etaScale_ = 1.0F;
+    wave_ = {};
     mis_ = {};
     deltaChain_ = true;
     string_ = PathString();
@@ -82,12 +86,16 @@ MisSums Subpath::sumsAtFirst(const glm::vec3& point, const glm::vec3& horizon, f
             start_.delta ? 0.0 : rules_.power(static_cast<double>(start_.cosine) / arrival)};
 }
 
-bool Subpath::advance(float coin) noexcept {
+bool Subpath::advance(float coin, Sampler& sampler) noexcept {
     const auto hit = scene_.intersect(ray_, coin);
     escaped_ = !hit;
     if (!hit) return false;
     const glm::vec3 back = -ray_.direction;
-    const Bsdf bsdf = scene_.surfaces().bsdf(hit->point, back);
+    if (wavelength::isDue(scene_, hit->point, wave_)) {
+        sampler.setDimension(wavelength::kDimension + vertices_.size());
+        throughput_ *= wavelength::choose(wave_, sampler);
+    }
+    const Bsdf bsdf = scene_.surfaces().bsdf(hit->point, back, wave_);
     absorption_ = medium::beforeHit(scene_, hit->point, bsdf, absorption_);
     throughput_ *= medium::transmittance(absorption_, hit->distance);
     const float arrival = cosine(back, bsdf.geometricNormal());
@@ -145,7 +153,8 @@ bool Subpath::deltaStep(PathVertex& v, const BsdfSample& sample, const Bsdf& oth
     const glm::vec3 &n = v.bsdf.shadingNormal(), &m = other.shadingNormal();
     const bool sameFrame = n == m || n == -m;
     throughput_ *= sample.weight;
-    mis_ = {0.0, sameFrame ? v.mis.onward * rules_.power(static_cast<double>(cosOut) * deltaPdfRatio(scene_, v, sample))
+    mis_ = {0.0, sameFrame ? v.mis.onward *
+                                 rules_.power(static_cast<double>(cosOut) * deltaPdfRatio(scene_, v, sample, wave_))
                            : 0.0};
     v.passed = sample.kind;
     if (from_ == From::Eye) return true;
@@ -198,9 +207,11 @@ bool Subpath::scatter(Sampler& sampler) noexcept {
     const glm::vec3& ng = v.bsdf.geometricNormal();
     const float cosOut = cosine(sample->wi, ng), before = maxComponent(throughput_);
     if (!(cosOut > kLeastCosine)) return false;
-    const bool goesOn = sample->delta ? deltaStep(v, *sample, scene_.surfaces().bsdf(v.hit.point, sample->wi), cosOut)
-                                      : glossyStep(v, *sample, cosOut, choose);
+    const bool goesOn = sample->delta
+                            ? deltaStep(v, *sample, scene_.surfaces().bsdf(v.hit.point, sample->wi, wave_), cosOut)
+                            : glossyStep(v, *sample, cosOut, choose);
     deltaChain_ = deltaChain_ && sample->delta;
+    if (!sample->delta) wave_ = {};
     if (!goesOn || !survives(before, sample->etaScale, roulette)) return false;
     if (from_ == From::Eye) string_.pass(v.passed);
     absorption_ = medium::afterHit(scene_, v.hit.point, v.bsdf, absorption_, sample->transmitted);

@@ -10,6 +10,7 @@
 #include "medium.h"
 #include "roulette.h"
 #include "walk_state.h"
+#include "wavelength.h"
 
 namespace pellucid {
 
@@ -63,6 +64,7 @@ struct Onward {
 bool Walk::goOn(State& state, const Vertex& vertex, const BsdfSample& sample, const Rgb& weight,
                 Sampler& sampler) noexcept {
     state.deltaChain = state.deltaChain && sample.delta;
+    if (!sample.delta) state.wave = {};
     state.throughput *= weight;
     state.etaScale *= sample.etaScale;
     state.pass(sample.kind);
@@ -116,6 +118,11 @@ bool Walk::split(State& state, const Vertex& vertex, Sampler& sampler, Branches&
     return true;
 }
 
+void Walk::takeWavelength(State& state, Sampler& sampler) noexcept {
+    sampler.setDimension(wavelength::kDimension + state.dimensions + static_cast<std::uint64_t>(state.vertices));
+    state.throughput *= wavelength::choose(state.wave, sampler);
+}
+
 bool Walk::step(State& state, Branches& branches, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept {
     const std::uint64_t dimension =
         kFirstDimension + state.dimensions + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
@@ -132,7 +139,8 @@ bool Walk::step(State& state, Branches& branches, Sampler& sampler, FirstHit* fi
     ++state.vertices;
     state.pathLength += hit->distance;
     const glm::vec3 wo = -state.ray.ray.direction;
-    const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo);
+    if (wavelength::isDue(context_.scene, hit->point, state.wave)) takeWavelength(state, sampler);
+    const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo, state.wave);
     state.ray.absorption = medium::beforeHit(context_.scene, hit->point, bsdf, state.ray.absorption);
     state.throughput *= medium::transmittance(state.ray.absorption, hit->distance);
     if (trace_ != nullptr) write(state, &*hit, &bsdf);
@@ -149,7 +157,7 @@ bool Walk::step(State& state, Branches& branches, Sampler& sampler, FirstHit* fi
     if (kinds == kNoLobe || (context_.options.maxDepth > 0 && state.vertices > context_.options.maxDepth)) return false;
     if (context_.options.splitLampChains && state.deltaChain && !state.gathering && !state.lampsFollowed)
         state.lampsFollowed = lampChains_.follow({*hit, bsdf, wo, state.throughput, state.ray.absorption,
-                                                  state.etaScale, state.ledger.path(), state.vertices},
+                                                  state.etaScale, state.ledger.path(), state.vertices, state.wave},
                                                  sampler, state.radiance);
     LobeKinds sampled = kinds & (kSpecular | kGlossy);
     LobeKinds direct = kinds;
@@ -243,7 +251,8 @@ GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexce
         if (!hit || ++state.vertices > kMostOnTheWay) return {};
         state.pathLength += hit->distance;
         const glm::vec3 wo = -state.ray.ray.direction;
-        const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo);
+        if (wavelength::isDue(context_.scene, hit->point, state.wave)) takeWavelength(state, sampler);
+        const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo, state.wave);
         const float footprint = state.ray.footprintAtOrigin + state.ray.footprintSpread * state.pathLength;
         if ((bsdf.kinds() & kDiffuse) != kNoLobe)
             return {true,

@@ -32,6 +32,7 @@ struct Walk::State {
     float pdfSolidAngle = 0.0F;  ///< of the direction, over the sampled lobes
     glm::vec3 lightPoint{0.0F}, lightNormal{0.0F};  ///< where next-event estimation stood
     float etaScale = 1.0F, pathLength = 0.0F;
+    Wave wave;  ///< of this chain of delta lobes
     int vertices = 0;
     std::uint64_t dimensions = 0;  ///< of the sampler, to leave out: other branches have them
     bool gathering = false;        ///< behind the first D vertex: the global map may answer

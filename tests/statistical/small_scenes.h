@@ -148,8 +148,23 @@ inline SmallScene normalMaps() {
     return {"normal maps", b.description()};
 }
 
+/// Two bodies of glass that spread white light far into its colours, one seen through the other, and a coloured one between.
+inline SmallScene dispersion() {
+    using namespace detail;
+    check::SceneBuilder b;
+    addCorner(b, coloured({0.7F, 0.7F, 0.7F}), coloured({0.6F, 0.7F, 0.5F}));
+    Material flint = check::glass(1.6F), crown = tinted(check::glass(1.45F), {0.3F, 0.1F, 0.6F});
+    flint.dispersion = 4.0F;
+    crown.dispersion = 2.0F;
+    b.sphere({-0.4, 0.45, 0.1}, 0.4, 12, flint, true);
+    b.box({0.2, 0.1, 0.2}, {0.8, 0.7, 0.6}, crown);
+    b.square({0.0, 1.6, 0.2}, {0, -1, 0}, 2.4, check::lamp(1.0F));
+    return {"dispersion", b.description()};
+}
+
 inline std::vector<SmallScene> smallScenes() {
-    return {roughGlass(), deltaLights(), sky(), layersOfGlass(), smoothCasters(), thinLens(), normalMaps()};
+    return {roughGlass(),    deltaLights(), sky(),        layersOfGlass(),
+            smoothCasters(), thinLens(),    normalMaps(), dispersion()};
 }
 
 }  // namespace pellucid::testing

@@ -427,6 +427,18 @@ TEST(Gltf, AnimationsAreNotedAndExtrasIgnored) {
     EXPECT_EQ(notes, 1);
 }
 
+TEST(Gltf, Dispersion) {
+    GltfBuilder b = triangle();
+    b.json["extensionsRequired"] = b.json["extensionsUsed"] = {"KHR_materials_dispersion"};
+    b.json["materials"] = {{{"extensions", {{"KHR_materials_dispersion", {{"dispersion", 0.5}}}}}}, {{"name", "plain"}}};
+    const SceneDescription scene = b.load();
+    EXPECT_EQ(scene.materials[0].dispersion, 0.5F);
+    EXPECT_EQ(scene.materials[1].dispersion, 0.0F);
+    EXPECT_TRUE(scene.warnings.empty());
+    b.json["materials"][0]["extensions"]["KHR_materials_dispersion"]["dispersion"] = -1.0;
+    EXPECT_THROW((void)b.load(), Error);
+}
+
 TEST(Gltf, UnknownExtensionsAreNamedOnce) {
     GltfBuilder b = triangle();
     b.json["extensionsUsed"] = {"EXT_unheard_of", "EXT_unheard_of", "KHR_materials_ior"};

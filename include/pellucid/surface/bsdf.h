@@ -15,6 +15,7 @@
 
 #include <pellucid/math/frame.h>
 #include <pellucid/math/rgb.h>
+#include <pellucid/surface/dispersion.h>
 #include <pellucid/surface/material.h>
 #include <pellucid/surface/surface_point.h>
 
@@ -75,8 +76,9 @@ public:
     SurfaceModel(SurfaceModel&&) noexcept;
     SurfaceModel& operator=(SurfaceModel&&) noexcept;
 
-    /// Lobes at `point` for a viewer in direction `wo`. Opaque materials shade both faces alike.
-    [[nodiscard]] class Bsdf bsdf(const SurfacePoint& point, const glm::vec3& wo) const noexcept;
+    /// Lobes at `point` for a viewer in direction `wo`, of smooth glass that disperses at this wavelength (none: 587.6 nm).
+    /// Opaque materials shade both faces alike.
+    [[nodiscard]] class Bsdf bsdf(const SurfacePoint& point, const glm::vec3& wo, Wave wave = {}) const noexcept;
 
     /// Radiance emitted at `point` towards `wo`: one-sided unless doubleSided. Linear RGB.
     [[nodiscard]] Rgb emittedRadiance(const SurfacePoint& point, const glm::vec3& wo) const noexcept;
@@ -86,6 +88,8 @@ public:
 
     /// Kinds of lobes that this material can have anywhere (textures taken into account conservatively).
     [[nodiscard]] LobeKinds possibleKinds(std::uint32_t material) const noexcept;
+    /// Whether its smooth glass has another ior at another wavelength. (Rough glass has one ior.)
+    [[nodiscard]] bool disperses(std::uint32_t material) const noexcept;
     /// Whether some material has a diffuse lobe under a normal map.
     [[nodiscard]] bool mapsDiffuseNormals() const noexcept;
 

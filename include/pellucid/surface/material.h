@@ -32,6 +32,7 @@ struct Material {
     float transmission = 0.0F;        ///< KHR_materials_transmission
     TextureRef transmissionTexture;   ///< in R
     float thickness = 0.0F;           ///< KHR_materials_volume; > 0: closed dielectric body that refracts
+    float dispersion = 0.0F;          ///< KHR_materials_dispersion: 20 / Abbe number
     Rgb absorption{0.0F};             ///< 1/m: -ln(attenuationColor) / attenuationDistance, Beer's law
 };
 

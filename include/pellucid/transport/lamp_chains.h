@@ -23,6 +23,7 @@ struct ChainVertex {
     float etaScale;
     PathString path;  ///< the vertices before this one
     int vertices;     ///< this one included
+    Wave wave;        ///< at which `bsdf` is
 };
 
 class LampChains {
@@ -43,6 +44,7 @@ private:
         float etaScale;
         PathString path;  ///< the vertices before this one
         int vertices;
+        Wave wave;
     };
     void branchOff(const ChainVertex& vertex, const DeltaBranches& branches, Sampler& sampler);
 

@@ -68,8 +68,8 @@ public:
     /// Emits from a light chosen by power; uses the sampler's first three dimensions. False: it chose darkness.
     [[nodiscard]] bool startAtLight(Sampler& sampler) noexcept;
 
-    /// Goes on to the next surface. False: there is none.
-    [[nodiscard]] bool advance(float coin) noexcept;
+    /// Goes on to the next surface. False: there is none. `sampler` gives a wavelength where one is due.
+    [[nodiscard]] bool advance(float coin, Sampler& sampler) noexcept;
     /// Scatters at the last vertex; uses five dimensions. False: the path ends there.
     [[nodiscard]] bool scatter(Sampler& sampler) noexcept;
 
@@ -86,6 +86,8 @@ public:
     /// Whether it has gone over delta lobes alone.
     [[nodiscard]] bool deltaChain() const noexcept { return deltaChain_; }
     [[nodiscard]] float etaScale() const noexcept { return etaScale_; }
+    /// At which the last vertex scatters.
+    [[nodiscard]] Wave wave() const noexcept { return wave_; }
     /// The string of the eye path behind its last scattering.
     [[nodiscard]] PathString string() const noexcept { return string_; }
 
@@ -113,6 +115,7 @@ private:
     Ray ray_;
     Rgb throughput_{1.0F}, absorption_{0.0F};
     float etaScale_ = 1.0F;
+    Wave wave_;  ///< of this chain of delta lobes
     bool escaped_ = false, deltaChain_ = true;
     MisSums mis_;  ///< of the next vertex, before the factors of its distance and cosine
     PathString string_;

@@ -150,6 +150,7 @@ private:
     void run(State& state, Sampler& sampler, FirstHit* first, float* firstDistance) noexcept;
     [[nodiscard]] bool step(State& state, Branches& branches, Sampler& sampler, FirstHit* first,
                             float* firstDistance) noexcept;
+    static void takeWavelength(State& state, Sampler& sampler) noexcept;
     [[nodiscard]] bool splits(const State& state) const noexcept;
     [[nodiscard]] bool split(State& state, const Vertex& vertex, Sampler& sampler, Branches& branches) noexcept;
     [[nodiscard]] bool goOn(State& state, const Vertex& vertex, const BsdfSample& sample, const Rgb& weight,
