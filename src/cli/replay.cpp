@@ -35,11 +35,13 @@ namespace {
     const std::string& material = scene.description().materials[v.material].name;
     return fmt::format(
         "{:3}  at {:.7g} {:.7g} {:.7g} m after {:.6g} m, normal {:.4f} {:.4f} {:.4f}{}\n"
-        "     material {}{}, lobes {}, geometry {}, triangle {}\n"
+        "     material {}{}, lobes {}{}, geometry {}, triangle {}\n"
         "     throughput {}, radiance so far {}\n",
         number, metres.x, metres.y, metres.z, static_cast<double>(v.distance) / n.scale(), v.normal.x, v.normal.y,
         v.normal.z, v.backSide ? ", from behind" : "", v.material, material.empty() ? "" : " '" + material + "'",
-        lobesText(v.kinds), v.geometry, v.primitive, rgb(v.throughput), rgb(v.before.total()));
+        lobesText(v.kinds),
+        v.wave.chosen() && (v.kinds & kSpecular) != kNoLobe ? fmt::format(" at {:.1f} nm", v.wave.nanometres) : "",
+        v.geometry, v.primitive, rgb(v.throughput), rgb(v.before.total()));
 }
 
 [[nodiscard]] std::string replayText(const SampleReplay& replay, const Scene& scene) {

@@ -189,6 +189,7 @@ bool Walk::step(State& state, Branches& branches, Sampler& sampler, FirstHit* fi
 void Walk::write(const State& state, const SurfaceHit* hit, const Bsdf* bsdf) const {
     TracedVertex vertex;
     vertex.throughput = state.throughput;
+    vertex.wave = state.wave;
     vertex.before = state.radiance;
     if (hit == nullptr) {
         vertex.hit = false;

@@ -430,7 +430,8 @@ TEST(Gltf, AnimationsAreNotedAndExtrasIgnored) {
 TEST(Gltf, Dispersion) {
     GltfBuilder b = triangle();
     b.json["extensionsRequired"] = b.json["extensionsUsed"] = {"KHR_materials_dispersion"};
-    b.json["materials"] = {{{"extensions", {{"KHR_materials_dispersion", {{"dispersion", 0.5}}}}}}, {{"name", "plain"}}};
+    b.json["materials"] = {{{"extensions", {{"KHR_materials_dispersion", {{"dispersion", 0.5}}}}}},
+                           {{"name", "plain"}}};
     const SceneDescription scene = b.load();
     EXPECT_EQ(scene.materials[0].dispersion, 0.5F);
     EXPECT_EQ(scene.materials[1].dispersion, 0.0F);

@@ -21,6 +21,7 @@ struct TracedVertex {
     std::uint32_t geometry = 0, primitive = 0, material = 0;
     LobeKinds kinds = kNoLobe;
     bool backSide = false;
+    Wave wave;               ///< at which it scatters
     Rgb throughput{1.0F};    ///< on arrival
     LayeredRadiance before;  ///< gathered before this vertex
 };
