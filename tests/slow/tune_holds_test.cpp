@@ -156,7 +156,9 @@ TEST(TuneHolds, OnSeedsAndViewsThatItHasNotSeen) {
     std::printf("median share of %zu scenes %.3f; of the %zu whose front is far %.3f\n", shares.size(),
                 shares[shares.size() / 2], sharesOfGain.size(),
                 sharesOfGain.empty() ? 1.0 : sharesOfGain[sharesOfGain.size() / 2]);
-    if (!sharesOfGain.empty()) EXPECT_LE(sharesOfGain[sharesOfGain.size() / 2], kMedian);
+    if (!sharesOfGain.empty()) {
+        EXPECT_LE(sharesOfGain[sharesOfGain.size() / 2], kMedian);
+    }
     EXPECT_LE(shares.back(), kWorst);
     EXPECT_LE(farthest, kNear) << "the default lies too far from the front: mend the plan's rules";
 }

@@ -82,7 +82,9 @@ TEST(Dispersion, BelongsToSmoothBodiesOfGlass) {
         const DeltaBranches ways = model.bsdf(point, wo, {nm}).deltaBranches(wo, TransportMode::Flux);
         ASSERT_EQ(ways.count, 2);
         for (const BsdfSample& way : ways.branch)
-            if (way.transmitted) EXPECT_NEAR(-way.wi.x, 0.8F / iorAt(1.7F, 1.0F, {nm}), 1e-6F) << nm;
+            if (way.transmitted) {
+                EXPECT_NEAR(-way.wi.x, 0.8F / iorAt(1.7F, 1.0F, {nm}), 1e-6F) << nm;
+            }
     }
 }
 

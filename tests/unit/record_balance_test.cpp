@@ -23,10 +23,11 @@ TEST(RecordBalance, FindsTheLeastNoise) {
             double least = noise2(b, 1.0);
             for (double f = 1.0; f <= std::min(8.0, left / b.recordRays); f *= 1.01)
                 least = std::min(least, noise2(b, f));
-            if (found > 1.0)
+            if (found > 1.0) {
                 EXPECT_LT(noise2(b, found), 1.001 * least) << eyeNoise2 << ", " << left;
-            else
+            } else {
                 EXPECT_GT(least, 0.84 * noise2(b, 1.0)) << eyeNoise2 << ", " << left;
+            }
         }
 }
 
