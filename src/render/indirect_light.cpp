@@ -86,7 +86,7 @@ bool IndirectLight::hasRoomForNext(const Pace& pace, const StageRecord& eyes, do
 }
 
 double IndirectLight::refinement(const Pace& pace, const StageRecord& eyes) const {
-    const bool own = light_.cache && light_.views == 1 && !loaded_ && !frozen_ && view_.request.cacheFile.empty();
+    const bool own = light_.cache && light_.views == 1 && !frozen_ && view_.request.cacheFile.empty();
     if (!own || !view_.plan.growRays || (pace.iterations != kFirstLook && pace.iterations % kLooks != 0)) return 1.0;
     RecordBalance b;
     b.recordNoise2 = pace.film.relativeRecordNoise2();
@@ -248,7 +248,7 @@ void IndirectLight::restoreFrom(const CheckpointState& state, const Maps& maps, 
         renew(maps, clock, progress);
     }
     recordRays_ = state.recordRays;
-    raysOfGeneration_ = state.raysOfGeneration;
+    light_.rays = raysOfGeneration_ = state.raysOfGeneration;  // with those of records that were made again since
     raysSince_ = state.raysSince;
     raysServed_ = state.raysServed;
 }
