@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <pellucid/math/constants.h>
-#include <pellucid/math/hash.h>
 #include <pellucid/study/record_json.h>
 #include <pellucid/surface/dispersion.h>
 
@@ -43,21 +42,14 @@ namespace {
     std::vector<Finding> all;
     for (const By& by : methods) {
         std::array<std::vector<double>, 3> values;
-        for (std::uint64_t k = 0; k < kManySeeds; ++k) {
-            const Image image = renderOnce(context, scene, by, smallSettings(), 16, hashCombine(context.seed, k)).image;
-            const int first = image.channel(by.layer.empty() ? "R" : by.layer + ".R");
-            for (std::size_t c = 0; c < 3; ++c) {
-                double sum = 0.0;
-                for (std::size_t i = 0; i < image.pixels(); ++i)
-                    sum += static_cast<double>(image.at(i, first + static_cast<int>(c)));
-                values[c].push_back(toQuantity * sum / static_cast<double>(image.pixels()));
-            }
+        for (int k = 0; k < kManySeeds; ++k) {
+            const glm::dvec3 means =
+                channelsOf(renderOnce(context, scene, by, smallSettings(), 16, seedOf(context, k)).image, by.layer);
+            for (glm::length_t c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)].push_back(toQuantity * means[c]);
         }
         for (std::size_t c = 0; c < 3; ++c)
-            all.push_back(measureSeeds(
-                context, fmt::format("{}, {}, {}", quantity, names[c], methodName(by.method)),
-                expected[static_cast<glm::length_t>(c)], by.bias, by.resolution,
-                [&, k = std::size_t{0}](std::uint64_t) mutable { return values[c][k++]; }, kManySeeds));
+            all.push_back(findingOf(fmt::format("{}, {}, {}", quantity, names[c], methodName(by.method)),
+                                    expected[static_cast<glm::length_t>(c)], by.bias, by.resolution, values[c]));
     }
     return all;
 }
@@ -85,12 +77,7 @@ std::vector<Finding> sunThroughSlab(const CheckContext& context) {
 std::vector<Finding> nearTotalReflection(const CheckContext& context) {
     const Material flint = dispersing(1.404F, 2.0F);  // n from 1.38 to 1.48: sqrt(2) lies in it, at 543 nm
     SceneBuilder b;
-    Mesh prism;
-    for (const float y : {-2.0F, 2.0F})  // right angle at the origin, legs along x and z
-        for (const glm::vec2 p : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
-            prism.positions.emplace_back(p.x, y, p.y);
-    prism.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}};
-    b.mesh(prism, flint);
+    b.mesh(rightAngledPrism(2.0F), flint);
     const glm::dvec3 out = glm::normalize(glm::dvec3(1, 0, 1));
     b.square(glm::dvec3(0.5, 0, 0.5) + 0.01 * out, -out, 6.0,
              lamp(1.0F, true));  // little leaves so flatly that it misses

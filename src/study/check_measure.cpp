@@ -15,10 +15,6 @@ namespace pellucid::check {
 
 namespace {
 
-[[nodiscard]] std::uint64_t seedOf(const CheckContext& context, int repetition) {
-    return hashCombine(context.seed, static_cast<std::uint64_t>(repetition));
-}
-
 /// Whether a render begins with photons: a pilot, maps, a cache.
 [[nodiscard]] bool prepares(Method method, const Scene& scene) noexcept {
     const bool lightPaths = method == Method::Light || method == Method::Reference;
@@ -26,6 +22,10 @@ namespace {
 }
 
 }  // namespace
+
+std::uint64_t seedOf(const CheckContext& context, int repetition) {
+    return hashCombine(context.seed, static_cast<std::uint64_t>(repetition));
+}
 
 Estimate estimate(std::span<const double> values) {
     const auto n = static_cast<double>(values.size());
@@ -36,13 +36,18 @@ Estimate estimate(std::span<const double> values) {
     return {mean, student * std::sqrt(square / (n * (n - 1.0)))};
 }
 
+Finding findingOf(std::string quantity, double expected, double allowance, double resolution,
+                  std::span<const double> values) {
+    const Estimate e = estimate(values);
+    const double unit = expected != 0.0 ? std::fabs(expected) : 1.0;
+    return {std::move(quantity), expected, e.mean, e.interval, (allowance + kFloatAllowance) * unit, resolution * unit};
+}
+
 Finding measureSeeds(const CheckContext& context, std::string quantity, double expected, double allowance,
                      double resolution, const std::function<double(std::uint64_t)>& once, int seeds) {
     std::vector<double> values;
     for (int i = 0; i < seeds; ++i) values.push_back(once(seedOf(context, i)));
-    const Estimate e = estimate(values);
-    const double unit = expected != 0.0 ? std::fabs(expected) : 1.0;
-    return {std::move(quantity), expected, e.mean, e.interval, (allowance + kFloatAllowance) * unit, resolution * unit};
+    return findingOf(std::move(quantity), expected, allowance, resolution, values);
 }
 
 Finding exact(std::string quantity, double expected, double measured, double allowance) {
@@ -72,12 +77,17 @@ RenderResult renderOnce(const CheckContext& context, const Scene& scene, const B
     return render(scene, request, context.workers);
 }
 
-double meanOf(const Image& image, const std::string& layer) {
+glm::dvec3 channelsOf(const Image& image, const std::string& layer) {
     const int first = image.channel(layer.empty() ? "R" : layer + ".R");
-    double sum = 0.0;
+    glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < image.pixels(); ++i)
-        for (int c = 0; c < 3; ++c) sum += static_cast<double>(image.at(i, first + c));
-    return sum / (3.0 * static_cast<double>(image.pixels()));
+        for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(image.at(i, first + c));
+    return sum / static_cast<double>(image.pixels());
+}
+
+double meanOf(const Image& image, const std::string& layer) {
+    const glm::dvec3 channels = channelsOf(image, layer);
+    return (channels.r + channels.g + channels.b) / 3.0;
 }
 
 std::vector<Finding> measure(const CheckContext& context, Rendered what) {

@@ -31,8 +31,12 @@ struct Estimate {
 /// Mean of independent values with its confidence interval, by Student's t.
 [[nodiscard]] Estimate estimate(std::span<const double> values);
 
-/// A finding from `seeds` calls of `once` with different seeds. Allowance and resolution are relative to `expected`
-/// (absolute where that is 0).
+/// The seed of a repetition.
+[[nodiscard]] std::uint64_t seedOf(const CheckContext& context, int repetition);
+/// A finding from independent values. Allowance and resolution are relative to `expected` (absolute where that is 0).
+[[nodiscard]] Finding findingOf(std::string quantity, double expected, double allowance, double resolution,
+                                std::span<const double> values);
+/// The same from `seeds` calls of `once` with different seeds.
 [[nodiscard]] Finding measureSeeds(const CheckContext& context, std::string quantity, double expected, double allowance,
                                    double resolution, const std::function<double(std::uint64_t seed)>& once,
                                    int seeds = kSeeds);
@@ -77,7 +81,8 @@ struct Rendered {
                                       const Settings& settings, int size, std::uint64_t seed);
 [[nodiscard]] Scene makeScene(const CheckContext& context, SceneDescription description,
                               std::optional<EnvironmentDescription> environment = std::nullopt);
-/// Mean over the image of a layer (empty: RGB), average of the channels.
+/// Mean over the image of a layer (empty: RGB), channel by channel, and the average of those.
+[[nodiscard]] glm::dvec3 channelsOf(const Image& image, const std::string& layer = {});
 [[nodiscard]] double meanOf(const Image& image, const std::string& layer = {});
 
 /// Caustic photons of one pass, emission guided by what an earlier one found, back in metres and watts.

@@ -62,6 +62,15 @@ Material glass(float ior, float absorption, float roughness) {
     return m;
 }
 
+Mesh rightAngledPrism(float halfLength) {
+    Mesh m;
+    for (const float y : {-halfLength, halfLength})
+        for (const glm::vec2 p : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
+            m.positions.emplace_back(p.x, y, p.y);
+    m.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}};
+    return m;
+}
+
 std::uint32_t SceneBuilder::add(const Material& material) {
     description_.materials.push_back(material);
     return static_cast<std::uint32_t>(description_.materials.size() - 1);

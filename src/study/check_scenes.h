@@ -22,6 +22,9 @@ struct SurfaceSpot {
 };
 using ParametricSurface = std::function<SurfaceSpot(double u, double v)>;
 
+/// Of glass, say: right angle at the origin, legs of length 1 along x and z, extruded along y to both sides.
+[[nodiscard]] Mesh rightAngledPrism(float halfLength);
+
 class SceneBuilder {
 public:
     std::uint32_t add(const Material& material);

@@ -133,21 +133,11 @@ std::vector<Finding> pointThroughSlab(const CheckContext& context) {
 }
 
 /// A right-angled prism turns the view by total reflection: in and out squarely, so T = (1 - R) / (1 + R) as for a slab.
-[[nodiscard]] Mesh prism() {
-    Mesh m;
-    // Right angle at the origin, legs along x and z, extruded along y.
-    for (const float y : {-1.0F, 1.0F})
-        for (const glm::vec2 p : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
-            m.positions.emplace_back(p.x, y, p.y);
-    m.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}};
-    return m;
-}
-
 std::vector<Finding> totalReflectionPrism(const CheckContext& context) {
     // Enters through the leg z = 0 going up, turns at the hypotenuse, leaves through the leg x = 0 going to -x.
     const double expected = slabTransmittance(1.0, 1.5);
     SceneBuilder seen;
-    seen.mesh(prism(), glass(1.5F));
+    seen.mesh(rightAngledPrism(1.0F), glass(1.5F));
     seen.square({-1.0, 0, 0.4}, {1, 0, 0}, 0.9, lamp(1.0F));
     seen.view({0.4, 0, 0}, {0, 0, -1}, 0.3, 0.5);
     std::vector<Finding> all = measureByAll(context, {seen.description(),
@@ -159,7 +149,7 @@ std::vector<Finding> totalReflectionPrism(const CheckContext& context) {
                                                       16,
                                                       smallSettings()});
     SceneBuilder lit;
-    lit.mesh(prism(), glass(1.5F));
+    lit.mesh(rightAngledPrism(1.0F), glass(1.5F));
     lit.square({-0.5, 0, 0.4}, {1, 0, 0}, 0.9, lambert(static_cast<float>(kRho)));
     lit.sun({0, 0, 1}, 3.0);
     lit.view({-0.5, 0, 0.4}, {1, 0, 0}, 0.3, 0.3);
