@@ -42,11 +42,10 @@ namespace {
     std::vector<Finding> all;
     for (const By& by : methods) {
         std::array<std::vector<double>, 3> values;
-        for (int k = 0; k < kManySeeds; ++k) {
-            const glm::dvec3 means =
-                channelsOf(renderOnce(context, scene, by, smallSettings(), 16, seedOf(context, k)).image, by.layer);
+        for (const glm::dvec3& means : forSeeds(context, kManySeeds, [&](std::uint64_t seed) {
+                 return channelsOf(renderOnce(context, scene, by, smallSettings(), 16, seed).image, by.layer);
+             }))
             for (glm::length_t c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)].push_back(toQuantity * means[c]);
-        }
         for (std::size_t c = 0; c < 3; ++c)
             all.push_back(findingOf(fmt::format("{}, {}, {}", quantity, names[c], methodName(by.method)),
                                     expected[static_cast<glm::length_t>(c)], by.bias, by.resolution, values[c]));

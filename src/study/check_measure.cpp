@@ -45,9 +45,7 @@ Finding findingOf(std::string quantity, double expected, double allowance, doubl
 
 Finding measureSeeds(const CheckContext& context, std::string quantity, double expected, double allowance,
                      double resolution, const std::function<double(std::uint64_t)>& once, int seeds) {
-    std::vector<double> values;
-    for (int i = 0; i < seeds; ++i) values.push_back(once(seedOf(context, i)));
-    return findingOf(std::move(quantity), expected, allowance, resolution, values);
+    return findingOf(std::move(quantity), expected, allowance, resolution, forSeeds(context, seeds, once));
 }
 
 Finding exact(std::string quantity, double expected, double measured, double allowance) {
@@ -92,21 +90,31 @@ double meanOf(const Image& image, const std::string& layer) {
 
 std::vector<Finding> measure(const CheckContext& context, Rendered what) {
     const Scene scene = makeScene(context, std::move(what.scene), std::move(what.environment));
+    struct Once {
+        double value = 0.0;
+        std::uint64_t nonfinite = 0;
+        double lost = 0.0;  // of the energy of a photon pass
+    };
     std::vector<Finding> findings;
     std::uint64_t nonfinite = 0;
-    double lost = 0.0;  // of the energy of a photon pass
+    double lost = 0.0;
     for (const By& by : what.by) {
         const std::string layer = by.layer.empty() ? "" : ", " + by.layer;
-        const auto once = [&](std::uint64_t seed) {
+        const auto all = forSeeds(context, prepares(by.method, scene) ? kSeeds : kManySeeds, [&](std::uint64_t seed) {
             const RenderResult result = renderOnce(context, scene, by, what.settings, what.size, seed);
-            nonfinite += result.record.nonfinite.count;
+            Once once{meanOf(result.image, by.layer) * what.toQuantity, result.record.nonfinite.count};
             for (const StageRecord& s : result.record.stages)
-                if (s.photonPasses > 0) lost = std::max(lost, std::fabs(s.energy.residual()));
-            return meanOf(result.image, by.layer) * what.toQuantity;
-        };
-        findings.push_back(measureSeeds(context, fmt::format("{}, {}{}", what.quantity, methodName(by.method), layer),
-                                        what.expected, by.bias, by.resolution, once,
-                                        prepares(by.method, scene) ? kSeeds : kManySeeds));
+                if (s.photonPasses > 0) once.lost = std::max(once.lost, std::fabs(s.energy.residual()));
+            return once;
+        });
+        std::vector<double> values;
+        for (const Once& once : all) {
+            values.push_back(once.value);
+            nonfinite += once.nonfinite;
+            lost = std::max(lost, once.lost);
+        }
+        findings.push_back(findingOf(fmt::format("{}, {}{}", what.quantity, methodName(by.method), layer),
+                                     what.expected, by.bias, by.resolution, values));
     }
     if (nonfinite > 0)
         findings.push_back(exact("samples that are not finite", 0.0, static_cast<double>(nonfinite), 0.0));

@@ -33,10 +33,20 @@ struct Estimate {
 
 /// The seed of a repetition.
 [[nodiscard]] std::uint64_t seedOf(const CheckContext& context, int repetition);
+/// once(seed) for each of `seeds` seeds, in their order. Tiny images occupy few threads, so the seeds run side by side:
+/// `once` is called by several threads at a time.
+template <class Once>
+[[nodiscard]] auto forSeeds(const CheckContext& context, int seeds, Once&& once) {
+    std::vector<decltype(once(context.seed))> values(static_cast<std::size_t>(seeds));
+    context.workers.forEach(values.size(), 1,
+                            [&](std::size_t i) { values[i] = once(seedOf(context, static_cast<int>(i))); });
+    return values;
+}
+
 /// A finding from independent values. Allowance and resolution are relative to `expected` (absolute where that is 0).
 [[nodiscard]] Finding findingOf(std::string quantity, double expected, double allowance, double resolution,
                                 std::span<const double> values);
-/// The same from `seeds` calls of `once` with different seeds.
+/// The same from forSeeds().
 [[nodiscard]] Finding measureSeeds(const CheckContext& context, std::string quantity, double expected, double allowance,
                                    double resolution, const std::function<double(std::uint64_t seed)>& once,
                                    int seeds = kSeeds);

@@ -40,11 +40,11 @@ using Pictures = std::array<Image, kTaken.size()>;
     Settings settings = smallSettings();
     settings.gatherRays = 128;
     Pictures all;
-    for (std::size_t m = 0; m < all.size(); ++m) {
+    context.workers.forEach(all.size(), 1, [&](std::size_t m) {
         Settings own = settings;
         if (kTaken[m].method == Method::Reference) own.causticPhotons = 2000;  // light paths, here
         all[m] = renderOnce(context, scene, {kTaken[m].method, kTaken[m].samples}, own, 24, seed).image;
-    }
+    });
     return all;
 }
 
