@@ -29,13 +29,11 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointKey& key
     ByteWriter body;
     body.putBlock(key.text);
     body.put(state.iteration);
-    body.put(state.generation);
-    body.put(state.leastGatherRays);
-    body.put(state.refinements);
-    body.put(state.recordRays);
-    body.put(state.raysOfGeneration);
-    body.put(state.raysSince);
-    body.put(state.raysServed);
+    const GenerationState& g = state.generations;
+    body.put(g.next);
+    body.put(g.leastGatherRays);
+    body.put(g.refinements);
+    for (const double rays : {g.recordRays, g.raysOfGeneration, g.raysSince, g.raysServed}) body.put(rays);
     body.put(state.causticPaths);
     body.put(state.causticRays);
     body.put(state.causticEmitted);
@@ -55,20 +53,18 @@ std::optional<CheckpointState> readCheckpoint(const std::filesystem::path& file,
                     file.string(), "give the same arguments as before, or delete it");
     CheckpointState state;
     state.iteration = reader.get<std::uint32_t>();
-    state.generation = reader.get<std::uint32_t>();
-    state.leastGatherRays = reader.get<std::int32_t>();
-    state.refinements = reader.get<std::uint32_t>();
-    state.recordRays = reader.get<double>();
-    state.raysOfGeneration = reader.get<double>();
-    state.raysSince = reader.get<double>();
-    state.raysServed = reader.get<double>();
+    GenerationState& g = state.generations;
+    g.next = reader.get<std::uint32_t>();
+    g.leastGatherRays = reader.get<std::int32_t>();
+    g.refinements = reader.get<std::uint32_t>();
+    for (double* rays : {&g.recordRays, &g.raysOfGeneration, &g.raysSince, &g.raysServed}) *rays = reader.get<double>();
     state.causticPaths = reader.get<std::uint32_t>();
     state.causticRays = reader.get<std::uint64_t>();
     state.causticEmitted = reader.get<std::uint64_t>();
     for (std::vector<char>* block :
          {&state.film, &state.training, &state.radii, &state.shrunk, &state.others, &state.penumbrae})
         *block = reader.getBlock<std::vector<char>>();
-    const bool rays = state.leastGatherRays >= 0 && state.leastGatherRays <= kMostGatherRays;
+    const bool rays = g.leastGatherRays >= 0 && g.leastGatherRays <= kMostGatherRays;
     if (!reader.good() || !rays) refuseDamaged(file, kCheckpoint);
     return state;
 }

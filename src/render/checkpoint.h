@@ -20,11 +20,20 @@ struct CheckpointKey {
 /// Scene hash, method, seed, camera, size, windows and every setting.
 [[nodiscard]] CheckpointKey checkpointKey(const Scene& scene, const RenderRequest& request, const Camera& camera);
 
+/// How far the generations of the indirect side have come.
+struct GenerationState {
+    std::uint32_t next = 0;            ///< number of the one to come
+    std::int32_t leastGatherRays = 0;  ///< that its records have
+    std::uint32_t refinements = 0;     ///< of the running one's records
+    double recordRays = 0.0;           ///< of all records so far
+    double raysOfGeneration = 0.0;     ///< that the running one took
+    double raysSince = 0.0;            ///< of the eye, that it has served
+    double raysServed = 0.0;           ///< and all before it
+};
+
 struct CheckpointState {
-    std::uint32_t iteration = 0, generation = 0;
-    std::int32_t leastGatherRays = 0;
-    std::uint32_t refinements = 0;  ///< of the running generation's records
-    double recordRays = 0.0, raysOfGeneration = 0.0, raysSince = 0.0, raysServed = 0.0;
+    std::uint32_t iteration = 0;
+    GenerationState generations;
     std::vector<char> film;
     std::vector<char> training, radii;                  ///< what guide and kernel radii have learnt
     std::uint32_t causticPaths = 0;                     ///< of an iteration to come

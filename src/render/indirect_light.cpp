@@ -59,14 +59,15 @@ void IndirectLight::save() const {
 
 void IndirectLight::startFrom(std::optional<LearntLight> known, std::uint32_t generation) {
     known_ = std::move(known);
-    generation_ = generation;
+    state_.next = generation;
 }
 
 bool IndirectLight::due(const Pace& pace, const StageRecord& eyes) const {
     if (!view_.plan.cache || pace.iterations == 0) return view_.plan.cache;
     if (frozen_) return false;
-    if (raysSince_ <= kGenerationShare * raysOfGeneration_) return false;
-    return raysSince_ > kGenerationShare * patience(pace) * raysOfGeneration_ && hasRoomForNext(pace, eyes, 0.0);
+    if (state_.raysSince <= kGenerationShare * state_.raysOfGeneration) return false;
+    return state_.raysSince > kGenerationShare * patience(pace) * state_.raysOfGeneration &&
+           hasRoomForNext(pace, eyes, 0.0);
 }
 
 /// Where little light is indirect its records may be the worse.
@@ -77,11 +78,11 @@ double IndirectLight::patience(const Pace& pace) const {
 /// Near the end of a budget a new one would not be used enough. `raysBefore`: of the eye, until it begins.
 bool IndirectLight::hasRoomForNext(const Pace& pace, const StageRecord& eyes, double raysBefore) const {
     const double perRay = eyes.seconds / std::max(1.0, static_cast<double>(eyes.rays));
-    const double asLearnt = perRay * raysOfGeneration_;  // if it was loaded
+    const double asLearnt = perRay * state_.raysOfGeneration;  // if it was loaded
     const double next = std::max(secondsOfGeneration_, loaded_ ? asLearnt : 0.0) * kGenerationGrowth;
     constexpr double kToUse = 1.0 + kGenerationShare;
     if (pace.budget.seconds && pace.seconds + perRay * raysBefore + kToUse * next > *pace.budget.seconds) return false;
-    const double raysToUse = raysBefore + kToUse * kGenerationGrowth * raysOfGeneration_;
+    const double raysToUse = raysBefore + kToUse * kGenerationGrowth * state_.raysOfGeneration;
     return !pace.budget.rays || static_cast<double>(pace.rays) + raysToUse <= static_cast<double>(*pace.budget.rays);
 }
 
@@ -90,16 +91,19 @@ double IndirectLight::refinement(const Pace& pace, const StageRecord& eyes) cons
     if (!own || !view_.plan.growRays || (pace.iterations != kFirstLook && pace.iterations % kLooks != 0)) return 1.0;
     RecordBalance b;
     b.recordNoise2 = pace.film.relativeRecordNoise2();
-    b.recordRays = recordRays_;
+    b.recordRays = state_.recordRays;
     b.eyeNoise2 = pace.film.relativeNoise2();
-    b.eyeRays = raysServed_;
-    b.raysLeft = pace.raysLeft(raysServed_);
-    const double untilNext = std::max(0.0, kGenerationShare * patience(pace) * raysOfGeneration_ - raysSince_);
+    b.eyeRays = state_.raysServed;
+    b.raysLeft = pace.raysLeft(state_.raysServed);
+    const double untilNext =
+        std::max(0.0, kGenerationShare * patience(pace) * state_.raysOfGeneration - state_.raysSince);
     if (b.raysLeft > untilNext && hasRoomForNext(pace, eyes, untilNext)) b.raysLeft = untilNext;
     return std::max(1.0, raysOfBetterRecords(b) / std::max(1.0, recordRaysOfGeneration_));
 }
 
-void IndirectLight::refine(double factor, const Maps& maps, RenderClock& clock, const Progress& progress) {
+bool IndirectLight::refine(double factor, const Maps& maps, RenderClock& clock, const Progress& progress) {
+    const GenerationState before = state_;
+    const WallClock::time_point began = WallClock::now();
     LearntLight light = light_;
     light.cache = nullptr;
     light.views = 0;
@@ -108,35 +112,46 @@ void IndirectLight::refine(double factor, const Maps& maps, RenderClock& clock, 
     const auto cut = [&clock, &progress] { return progress.stopAsked() || clock.past(kLaterCacheShare); };
     const std::uint64_t raysBefore = rays();
     CacheBuild build = makeRecords(light, guide_.get(), maps, clock, cut);
-    light_.rays = light.rays += static_cast<double>(rays() - raysBefore);
-    raysOfGeneration_ = light_.rays;
-    if (cut()) return;  // whole records that are noisier rather than half of these
+    const bool whole = !cut();
+    if (!whole && progress.stopAsked()) {
+        state_ = before;
+        return false;
+    }
+    state_.raysOfGeneration = light_.rays = light.rays += static_cast<double>(rays() - raysBefore);
+    secondsOfGeneration_ += secondsSince(began);
+    if (!whole) return true;  // complete records that are noisier rather than half of these
     cacheStage_.records += build.cache->records().size();
     light.cache = std::move(build.cache);
     light.views = 1;
     plain_ = std::move(build.plain);
-    leastRays_ = light.size.gatherRays;
-    decision_ = {"records made again", fmt::format("{} rays", leastRays_),
+    state_.leastGatherRays = light.size.gatherRays;
+    state_.refinements = light.refinements;
+    decision_ = {"records made again", fmt::format("{} rays", light.size.gatherRays),
                  fmt::format("those of {} rays left more noise than the eye would", light_.size.gatherRays)};
     light_ = std::move(light);
+    return true;
 }
 
 LearntLight IndirectLight::nextGeneration() {
     LearntLight light = known_ ? *std::exchange(known_, std::nullopt) : LearntLight{};
     if (light.cache) return light;
     light.seed = view_.request.seed;
-    light.generation = generation_;
-    light.size = view_.plan.generation(generation_);
-    light.size.gatherRays = std::max(light.size.gatherRays, leastRays_);
-    light.refinements = std::exchange(refinements_, 0);
+    light.generation = state_.next;
+    light.size = view_.plan.generation(state_.next);
+    light.size.gatherRays = std::max(light.size.gatherRays, state_.leastGatherRays);
     return light;
 }
 
-void IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& progress) {
-    if (frozen_) return useFrozen();
+bool IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& progress) {
+    if (!frozen_) return makeGeneration(nextGeneration(), maps, clock, progress);
+    useFrozen();
+    return true;
+}
+
+bool IndirectLight::makeGeneration(LearntLight light, const Maps& maps, RenderClock& clock, const Progress& progress) {
     const std::uint64_t raysBefore = rays();
     const WallClock::time_point began = WallClock::now();
-    LearntLight light = nextGeneration();
+    const GenerationState stateBefore = state_;
     const bool first = !light_.cache;
     LearntLight before = std::exchange(light_, {});
     const auto cut = [&clock, &progress, first] {
@@ -144,32 +159,35 @@ void IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& 
     };
     const std::size_t places = placesOf(light), records = recordsOf(light);
     const std::uint64_t view = hashOf(view_.survey);
-    const bool complete = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
-    if (!complete && cut()) {
-        if (!first) light = std::move(before);  // too late to begin
-    } else if (!complete) {
+    bool whole = std::find(light.seen.begin(), light.seen.end(), view) != light.seen.end();
+    if (!whole && !cut()) {
         guide_ = view_.plan.globalMap ? makeMap(light, maps) : nullptr;
         CacheBuild build = makeRecords(light, guide_.get(), maps, clock, cut);
-        const bool whole = !cut();
+        whole = !cut();
         if (whole || first) {
             cacheStage_.records += build.cache->records().size() - records;
             light.cache = std::move(build.cache);
             plain_ = std::move(build.plain);
             if (whole) light.seen.push_back(view);
             ++light.views;
-        } else {
-            light = std::move(before);  // whole records of the last generation rather than half of this one's
         }
     }
-    light.rays += static_cast<double>(rays() - raysBefore);
-    if (first && light.map) reuse_.placesReused = places, reuse_.placesNew = placesOf(light) - places;
-    if (first) reuse_.recordsReused = records, reuse_.recordsNew = recordsOf(light) - records;
-    light_ = std::move(light);
-    raysOfGeneration_ = light_.rays;
-    raysSince_ = 0.0;
+    const bool stopped = !whole && progress.stopAsked();
+    // Whole records of the last generation rather than half of this one's.
+    light_ = whole || first ? std::move(light) : std::move(before);
+    if (stopped && !first) {
+        state_ = stateBefore;
+        return false;
+    }
+    state_.raysOfGeneration = light_.rays += static_cast<double>(rays() - raysBefore);
+    state_.raysSince = 0.0;
+    state_.refinements = light_.refinements;
+    state_.next = light_.generation + 1;
     secondsOfGeneration_ = secondsSince(began);
-    generation_ = light_.generation + 1;
+    if (first && light_.map) reuse_.placesReused = places, reuse_.placesNew = placesOf(light_) - places;
+    if (first) reuse_.recordsReused = records, reuse_.recordsNew = recordsOf(light_) - records;
     if (first && loaded_) save();
+    return !stopped;
 }
 
 /// With what its photons tell gather rays, if they were shot and that is asked for.
@@ -198,15 +216,15 @@ CacheBuild IndirectLight::makeRecords(const LearntLight& light, const GatherGuid
     const std::uint64_t rays = view_.pixels.ofWholeImage(build.rays);
     cacheStage_.rays += rays;
     recordRaysOfGeneration_ = static_cast<double>(rays);
-    recordRays_ += recordRaysOfGeneration_;
+    state_.recordRays += recordRaysOfGeneration_;
     return build;
 }
 
 void IndirectLight::useFrozen() {
     light_ = *frozen_;
     reuse_ = {true, recordsOf(light_), 0, placesOf(light_), 0};
-    raysOfGeneration_ = light_.rays;
-    generation_ = light_.generation + 1;
+    state_.raysOfGeneration = light_.rays;
+    state_.next = light_.generation + 1;
 }
 
 void IndirectLight::giveTo(Maps& maps) const noexcept {
@@ -229,28 +247,19 @@ void IndirectLight::addLayers(Image& image) const {
         view_.workers);
 }
 
-void IndirectLight::saveTo(CheckpointState& state) const noexcept {
-    state.generation = generation_;
-    state.leastGatherRays = leastRays_;
-    state.refinements = light_.refinements;
-    state.recordRays = recordRays_;
-    state.raysOfGeneration = raysOfGeneration_;
-    state.raysSince = raysSince_;
-    state.raysServed = raysServed_;
-}
-
-void IndirectLight::restoreFrom(const CheckpointState& state, const Maps& maps, RenderClock& clock,
+bool IndirectLight::restoreFrom(const GenerationState& state, const Maps& maps, RenderClock& clock,
                                 const Progress& progress) {
-    if (view_.plan.cache && state.generation > 0) {
-        generation_ = state.generation - 1;
-        leastRays_ = state.leastGatherRays;
-        refinements_ = state.refinements;
-        renew(maps, clock, progress);
+    bool whole = true;
+    if (view_.plan.cache && state.next > 0) {
+        state_ = state;
+        --state_.next;
+        LearntLight light = nextGeneration();
+        light.refinements = state.refinements;
+        whole = makeGeneration(std::move(light), maps, clock, progress);
     }
-    recordRays_ = state.recordRays;
-    light_.rays = raysOfGeneration_ = state.raysOfGeneration;  // with those of records that were made again since
-    raysSince_ = state.raysSince;
-    raysServed_ = state.raysServed;
+    state_ = state;
+    light_.rays = state.raysOfGeneration;  // with those of records that were made again since
+    return whole;
 }
 
 }  // namespace pellucid

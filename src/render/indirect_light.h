@@ -41,17 +41,19 @@ public:
     /// Whether a new generation should be made before the next iteration. `eyes`: what eye passes have cost.
     [[nodiscard]] bool due(const Pace& pace, const StageRecord& eyes) const;
     /// Makes it: fresh global photons and fresh records, with an error bound that tightens; or what is known, and more of it.
-    /// `maps`: those of the caustic side. A budget of time cuts it short, and so does `progress`.
-    void renew(const Maps& maps, RenderClock& clock, const Progress& progress);
+    /// `maps`: those of the caustic side. A budget of time cuts it short, and so does `progress`: false, and all is as it was
+    /// before, but that the first one's records stay as far as they came.
+    bool renew(const Maps& maps, RenderClock& clock, const Progress& progress);
     /// How many times as many gather rays the running generation's records should have had, by what noise they and the eye
     /// leave in the image; 1: as they are. Asked before an iteration that makes no new generation.
     [[nodiscard]] double refinement(const Pace& pace, const StageRecord& eyes) const;
-    /// Makes the running generation's records anew, with so many times as many gather rays of the same map.
-    void refine(double factor, const Maps& maps, RenderClock& clock, const Progress& progress);
+    /// Makes the running generation's records anew, with so many times as many gather rays of the same map. Where `progress`
+    /// cuts it short: false, and all is as it was before.
+    bool refine(double factor, const Maps& maps, RenderClock& clock, const Progress& progress);
     /// Tells it of eye rays that the running generation has served.
     void served(std::uint64_t rays) noexcept {
-        raysSince_ += static_cast<double>(rays);
-        raysServed_ += static_cast<double>(rays);
+        state_.raysSince += static_cast<double>(rays);
+        state_.raysServed += static_cast<double>(rays);
     }
 
     /// What was decided on the way, beyond the plan.
@@ -70,14 +72,15 @@ public:
     [[nodiscard]] double seconds() const noexcept { return globalStage_.seconds + cacheStage_.seconds; }
     [[nodiscard]] std::uint64_t rays() const noexcept { return globalStage_.rays + cacheStage_.rays; }
 
-    void saveTo(CheckpointState& state) const noexcept;
-    /// Makes the running generation again: keyed by seed and number, it is the same.
-    void restoreFrom(const CheckpointState& state, const Maps& maps, RenderClock& clock, const Progress& progress);
+    [[nodiscard]] const GenerationState& state() const noexcept { return state_; }
+    /// Makes the running generation again: keyed by seed and number, it is the same. False where `progress` cut it short.
+    bool restoreFrom(const GenerationState& state, const Maps& maps, RenderClock& clock, const Progress& progress);
 
 private:
     void save() const;
     void useFrozen();
     [[nodiscard]] LearntLight nextGeneration();
+    bool makeGeneration(LearntLight light, const Maps& maps, RenderClock& clock, const Progress& progress);
     [[nodiscard]] double patience(const Pace& pace) const;
     [[nodiscard]] bool hasRoomForNext(const Pace& pace, const StageRecord& eyes, double raysBefore) const;
     [[nodiscard]] std::unique_ptr<const GatherGuide> makeMap(LearntLight& light, const Maps& maps);
@@ -94,11 +97,8 @@ private:
     double raysLoaded_ = 0.0;
     std::optional<Decision> decision_;
     ReuseReport reuse_;
-    std::uint32_t generation_ = 0;  ///< the next one's number
-    int leastRays_ = 0;             ///< gather rays that its records have at least
-    double recordRays_ = 0.0, recordRaysOfGeneration_ = 0.0;
-    std::uint32_t refinements_ = 0;  ///< its records are these at once: it is made again for a render that goes on
-    double raysOfGeneration_ = 0.0, raysSince_ = 0.0, raysServed_ = 0.0, secondsOfGeneration_ = 0.0;
+    GenerationState state_;
+    double recordRaysOfGeneration_ = 0.0, secondsOfGeneration_ = 0.0;
     StageRecord globalStage_{"global photons"}, cacheStage_{"irradiance cache"};
 };
 

@@ -39,15 +39,13 @@ Renderer::Renderer(const Scene& scene, const RenderRequest& request, const Worke
 
 RenderResult Renderer::run() {
     const RenderRequest& request = view_.request;
-    if (!request.checkpoint.empty() && request.resume) resume();
-    bool interrupted = false;
+    bool interrupted = request.resume && !resume();
     while (!interrupted && !pace().finished()) {
-        iterate();
+        interrupted = !iterate() || progress_.stopAsked();
         tell("rendering");
-        interrupted = progress_.stopAsked();
-        if (!request.checkpoint.empty()) saveWhenDue(interrupted);
+        saveWhenDue(interrupted);
     }
-    if (!request.checkpoint.empty()) save();
+    save();
     indirect_.saveAtEnd();
     if (!request.pointsFolder.empty())
         writePointClouds(request.pointsFolder, indirect_.stored(), caustics_.photons(), view_.scene.normalisation());
@@ -55,28 +53,34 @@ RenderResult Renderer::run() {
 }
 
 RenderRecord Renderer::plan() {
-    iterate();
+    (void)iterate();
     return record();
 }
 
-void Renderer::iterate() {
+bool Renderer::iterate() {
     const double once = indirect_.seconds(), began = clock_.elapsed();
-    makeMaps();
+    const bool whole = makeMaps();
+    if (!whole && iteration_ > 0) return false;
+    cutShort_ = !whole;
     tracePixels();
     caustics_.countUse();
     secondsOfIteration_ = clock_.elapsed() - began - (indirect_.seconds() - once);
     ++iteration_;
+    return whole;
 }
 
 /// What the eye paths of this iteration read.
-void Renderer::makeMaps() {
+bool Renderer::makeMaps() {
     const Pace now = pace();
+    bool whole = true;
     if (indirect_.due(now, eyes_.stage()))
-        indirect_.renew(caustics_.maps(source_), clock_, progress_);
+        whole = indirect_.renew(caustics_.maps(source_), clock_, progress_);
     else if (const double factor = indirect_.refinement(now, eyes_.stage()); factor > 1.0)
-        indirect_.refine(factor, caustics_.maps(source_), clock_, progress_);
+        whole = indirect_.refine(factor, caustics_.maps(source_), clock_, progress_);
+    if (!whole && iteration_ > 0) return false;
     if (view_.plan.causticMap) caustics_.pass(source_, film_, iteration_);
     if (view_.plan.otherPhotons) others_.pass(iteration_);
+    return whole;
 }
 
 void Renderer::tracePixels() {
@@ -162,6 +166,7 @@ RenderRecord Renderer::record() const {
 }
 
 void Renderer::save() const {
+    if (view_.request.checkpoint.empty() || cutShort_) return;
     CheckpointState state;
     state.iteration = iteration_;
     state.film = film_.save();
@@ -169,7 +174,7 @@ void Renderer::save() const {
     caustics_.saveTo(state);
     others_.saveTo(state);
     eyes_.saveTo(state);
-    indirect_.saveTo(state);
+    state.generations = indirect_.state();
     writeCheckpoint(view_.request.checkpoint, checkpointKey(view_.scene, view_.request, view_.camera), state);
 }
 
@@ -181,16 +186,16 @@ void Renderer::saveWhenDue(bool now) {
 }
 
 /// The continued image has the bits of an uninterrupted one.
-void Renderer::resume() {
+bool Renderer::resume() {
     const auto state =
         readCheckpoint(view_.request.checkpoint, checkpointKey(view_.scene, view_.request, view_.camera));
-    if (!state) return;
+    if (!state) return true;
     if (!film_.restore(state->film) || !source_.restoreFrom(*state) || !caustics_.restoreFrom(*state) ||
         !others_.restoreFrom(*state) || !eyes_.restoreFrom(*state))
         throw Error(ErrorKind::BadInput, "the checkpoint does not fit this image", view_.request.checkpoint.string(),
                     "delete it or render without --resume");
-    indirect_.restoreFrom(*state, caustics_.maps(source_), clock_, progress_);
     iteration_ = state->iteration;
+    return indirect_.restoreFrom(state->generations, caustics_.maps(source_), clock_, progress_);
 }
 
 }  // namespace pellucid

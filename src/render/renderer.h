@@ -35,8 +35,9 @@ public:
     [[nodiscard]] SampleReplay replay(PixelAt at, std::uint32_t sample);
 
 private:
-    void iterate();
-    void makeMaps();
+    /// False where a stop cut its records short: then it is left out, but for the first, whose picture is all that there is.
+    [[nodiscard]] bool iterate();
+    [[nodiscard]] bool makeMaps();
     void renewShares();
     void tracePixels();
     [[nodiscard]] TransportContext eyeContext() const noexcept;
@@ -51,7 +52,8 @@ private:
     [[nodiscard]] RenderRecord record() const;
     void save() const;
     void saveWhenDue(bool now);
-    void resume();
+    /// False where a stop cut the records short that it makes again.
+    [[nodiscard]] bool resume();
 
     const Progress& progress_;
     RenderClock clock_;
@@ -64,6 +66,7 @@ private:
     LightSide lights_;
     EyeSide eyes_;
     std::uint32_t iteration_ = 0;
+    bool cutShort_ = false;  ///< by a stop, in the first iteration: no render may go on from it
     double secondsOfIteration_ = 0.0, lastSave_ = 0.0;
 };
 

@@ -45,10 +45,10 @@ SampleReplay Renderer::replay(PixelAt at, std::uint32_t sample) {
     const Plan& plan = view_.plan;
     if (!plan.causticMap && !plan.otherPhotons && !plan.cache && !plan.adaptive) film_.countSamples(sample);
     while (film_.samples() < sample && !progress_.stopAsked()) {
-        iterate();
+        if (!iterate()) break;
         tell("iterations before the sample");
     }
-    makeMaps();
+    (void)makeMaps();
     SampleReplay replay = view_.bidirectional() ? replayBidirectional(at) : replayWalk(at);
     replay.width = view_.camera.width();
     replay.height = view_.camera.height();

@@ -43,9 +43,9 @@ CheckpointState stateOfTwoSamples() {
     }
     CheckpointState state;
     state.iteration = 2;
-    state.generation = 1;
-    state.raysOfGeneration = 1e5;
-    state.raysSince = 3e4;
+    state.generations.next = 1;
+    state.generations.raysOfGeneration = 1e5;
+    state.generations.raysSince = 3e4;
     state.film = film.save();
     for (int i = 0; i < 24; ++i) state.training.push_back(static_cast<char>(i));
     state.radii = std::vector<char>(16, 1);
