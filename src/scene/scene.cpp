@@ -100,7 +100,10 @@ std::optional<SurfaceHit> Scene::intersect(const Ray& ray, float coin) const noe
         const bool passes = s.isMerged(hit.point);
         if (!passes && !s.hasAlpha[hit.point.material]) return hit;
         const float coverage = passes ? 0.0F : s.surfaces->coverage(hit.point);
-        if (coin < coverage) return hit;
+        if (coin < coverage) {
+            hit.coverage = coverage;
+            return hit;
+        }
         coin = std::min((coin - coverage) / std::max(1.0F - coverage, 1e-12F), 0x1.fffffep-1F);
         const glm::vec3 n = glm::dot(hit.point.geometricNormal, ray.direction) < 0.0F ? -hit.point.geometricNormal
                                                                                       : hit.point.geometricNormal;

@@ -46,6 +46,12 @@ struct Arrival {
     float shading;  ///< |wi.ns| / |wi.ng|: flux density on the true surface to irradiance of the shaded one
 };
 
+/// What arriving flux lays on the surface as it is shaded, for an estimate of its density: where some of the light passes
+/// (alpha) the eye does too, and what the surface shows must not be lessened twice.
+[[nodiscard]] inline Rgb onSurface(const Arrival& a, const Rgb& flux) noexcept {
+    return flux * (a.shading / a.hit.coverage);
+}
+
 /// The next vertex of a light path, with absorption applied. Empty: it escaped or grazes.
 [[nodiscard]] inline std::optional<Arrival> arrive(const Scene& scene, LightPath& path, Sampler& sampler) noexcept {
     const std::uint64_t dimension =

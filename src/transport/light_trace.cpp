@@ -48,7 +48,7 @@ namespace {
             a.hit.point.barycentric,
             a.bsdf.backSide(),
             std::min(1.0F, std::fabs(glm::dot(a.wi, a.bsdf.shadingNormal()))),
-            flux * a.shading};
+            onSurface(a, flux)};
 }
 
 /// From the receiver of a caustic on over casters alone. A copy of the path: its light has been counted.

@@ -11,7 +11,7 @@ namespace {
 [[nodiscard]] bool receives(const Arrival& a) noexcept { return (a.bsdf.kinds() & kDiffuse) != kNoLobe; }
 
 [[nodiscard]] Photon photonOf(const Arrival& a, const Rgb& flux, float perPath) noexcept {
-    return {a.hit.point.position, a.wi, a.bsdf.geometricNormal(), flux * (a.shading * perPath)};
+    return {a.hit.point.position, a.wi, a.bsdf.geometricNormal(), onSurface(a, flux) * perPath};
 }
 
 [[nodiscard]] bool usable(const Photon& p) noexcept { return isFinite(p.flux) && !isBlack(p.flux); }

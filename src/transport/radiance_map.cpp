@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <type_traits>
 
 #include "photon_tree.h"
@@ -105,13 +106,14 @@ RadianceMap::RadianceMap(const Scene& scene, const std::vector<GlobalPhoton>& ph
     workers.forEach(fresh, 256, [&](std::size_t i) {
         points[i].lookup = lookupRadius(neighbours, points, points[i], options.maxRadius);
     });
+    std::vector<std::uint64_t> rays(fresh, static_cast<std::uint64_t>(options.lampSamples));
     workers.forEach(fresh, 256, [&](std::size_t i) {
         RadiancePoint& p = points[i];
-        estimateIndirect(scene, indirect, tree, p, options);
+        rays[i] += estimateIndirect(scene, indirect, tree, p, options);
         p.irradiance += directIrradiance(scene, p, options, before + i);
     });
     if (before > 0) sortAlongMortonCurve(points);
-    impl_->rays = fresh * (static_cast<std::uint64_t>(options.lampSamples) + 2 * kSectors + 2);
+    impl_->rays = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
     impl_->index(farthestLookup(options.maxRadius));
 }
 

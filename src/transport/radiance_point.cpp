@@ -15,6 +15,10 @@ constexpr int kMaxNeighbours = 64;
 /// A place answers for look-ups within this many radii of its estimate, or of the distance to its kNeighbour-th neighbour.
 constexpr float kReach = 1.5F;
 constexpr int kNeighbour = 6;
+/// Rings of equal width that a sector of the kernel is cut into, to find out how far there is surface in it.
+constexpr int kRings = 5;
+/// Of the height that photons may have, for rounding; and the least of the kernel's free area that counts as surface.
+constexpr float kProbeSlack = 1.01F, kLeastShare = 0.05F;
 /// Height of the sectors' rays over the surface, as a share of the kernel's radius.
 constexpr float kSectorHeight = 0.05F;
 
@@ -97,6 +101,41 @@ void measureReach(const Scene& scene, RadiancePoint& p) noexcept {
             std::min({distance[middle - 1], distance[middle], distance[(middle + 1) % kRays]});
 }
 
+/// Of a sector's area within `radius`, the share where there is surface whose photons count: beyond an edge there is none, and
+/// a small body bends away. From the outermost ring inwards; what lies within a ring with surface is taken to have it, too.
+[[nodiscard]] float surfaceShare(const Scene& scene, const RadiancePoint& p, const glm::vec3& along, float radius,
+                                 std::uint64_t& rays) noexcept {
+    for (int ring = kRings; ring > 0; --ring) {
+        const float end = static_cast<float>(ring) / kRings, distance = radius * (end - 0.5F / kRings),
+                    up = std::min(kMaxPlaneDistance * distance, p.above),
+                    down = std::min(kMaxPlaneDistance * distance, p.below);
+        const glm::vec3 start = offsetOrigin(p.position, p.normal) + along * distance + p.normal * up;
+        ++rays;
+        const auto hit = scene.intersect(Ray{start, -p.normal, kProbeSlack * (up + down)}, 0.0F);
+        if (hit && std::fabs(glm::dot(hit->point.geometricNormal, p.normal)) >= kMinNormalCosine) return end * end;
+    }
+    return 0.0F;
+}
+
+/// Of the kernel's disc, the area that is surface and can be seen from the point.
+[[nodiscard]] float areaOf(const Scene& scene, const RadiancePoint& p, const Frame& frame,
+                           std::uint64_t& rays) noexcept {
+    float area = 0.0F, free2 = 0.0F;
+    bool whole = true;  // so far; an edge is met by every other sector, too
+    for (const std::size_t first : {0U, 1U})
+        for (std::size_t i = first; i < kSectors; i += 2) {
+            const float phi = kTwoPi * (static_cast<float>(i) + 0.5F) / static_cast<float>(kSectors);
+            const glm::vec3 along = frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi);
+            const float inside = std::min(p.reach.free[Reach::sector(frame, along)], p.radius);
+            free2 += inside * inside;
+            if (!(inside > 0.0F)) continue;
+            const float share = first == 1 && whole ? 1.0F : surfaceShare(scene, p, along, inside, rays);
+            whole = whole && share == 1.0F;
+            area += inside * inside * share;
+        }
+    return kPi / static_cast<float>(kSectors) * std::max(area, kLeastShare * free2);
+}
+
 }  // namespace
 
 IndirectPhotons indirectOf(const std::vector<GlobalPhoton>& photons) {
@@ -144,10 +183,10 @@ Rgb directIrradiance(const Scene& scene, const RadiancePoint& p, const RadianceM
     return sum / static_cast<float>(options.lampSamples);
 }
 
-/// k-nearest density estimate with the (k-1) form, which is unbiased in a flat field, over the sectors' free areas; with fewer
-/// than k photons inside the largest radius, all of them.
-void estimateIndirect(const Scene& scene, const IndirectPhotons& photons, const PointTree<Photon>& tree,
-                      RadiancePoint& p, const RadianceMapOptions& options) {
+/// k-nearest density estimate with the (k-1) form, which is unbiased in a flat field, over the surface in the sectors' free
+/// areas; with fewer than k photons inside the largest radius, all of them.
+std::uint64_t estimateIndirect(const Scene& scene, const IndirectPhotons& photons, const PointTree<Photon>& tree,
+                               RadiancePoint& p, const RadianceMapOptions& options) {
     const float maxRadius = options.maxRadius;
     measureClearance(scene, p, kMaxPlaneDistance * farthestLookup(maxRadius));
     NearestPhotons nearest(photons.photons, p, std::min(options.neighbours, kMaxNeighbours), maxRadius * maxRadius);
@@ -156,13 +195,10 @@ void estimateIndirect(const Scene& scene, const IndirectPhotons& photons, const 
     p.radius = bounded ? maxRadius : std::sqrt(nearest.radius2);
     p.lookup = std::max(p.lookup, kReach * p.radius);
     measureReach(scene, p);
-    float area = 0.0F;
-    for (const float free : p.reach.free) {
-        const float inside = std::min(free, p.radius);
-        area += kPi / static_cast<float>(kSectors) * inside * inside;
-    }
-    if (!(area > 0.0F)) return;
     const Frame frame(p.normal);
+    std::uint64_t rays = 2 + 2 * kSectors;
+    const float area = areaOf(scene, p, frame, rays);
+    if (!(area > 0.0F)) return rays;
     for (int i = bounded ? 0 : 1; i < nearest.found; ++i) {  // heap[0] is the farthest: the k-th, left out
         const auto& [distance2, index] = nearest.heap[static_cast<std::size_t>(i)];
         const Photon& photon = photons.photons[index];
@@ -173,6 +209,7 @@ void estimateIndirect(const Scene& scene, const IndirectPhotons& photons, const 
         p.irradiance += photon.flux * (t / area);
         if (photons.overSpecular[index] != 0) p.caustic += photon.flux * (t / area);
     }
+    return rays;
 }
 
 }  // namespace pellucid

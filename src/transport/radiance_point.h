@@ -54,9 +54,9 @@ struct IndirectPhotons {
 [[nodiscard]] float lookupRadius(const PointTree<RadiancePoint>& tree, const std::vector<RadiancePoint>& points,
                                  const RadiancePoint& p, float maxRadius);
 
-/// Adds what the photons say to the irradiance of `p`.
-void estimateIndirect(const Scene& scene, const IndirectPhotons& photons, const PointTree<Photon>& tree,
-                      RadiancePoint& p, const RadianceMapOptions& options);
+/// Adds what the photons say to the irradiance of `p`. Returns the rays that it took to see the surface around.
+std::uint64_t estimateIndirect(const Scene& scene, const IndirectPhotons& photons, const PointTree<Photon>& tree,
+                               RadiancePoint& p, const RadianceMapOptions& options);
 
 /// W m^-2 straight from the lamps, weighted by the lobe. `index` keys the samples.
 [[nodiscard]] Rgb directIrradiance(const Scene& scene, const RadiancePoint& p, const RadianceMapOptions& options,

@@ -210,7 +210,7 @@ class ClassLedger : public ::testing::TestWithParam<std::pair<const char*, const
 
 TEST_P(ClassLedger, PhotonsCarryWhatBidirectionalPathsCarry) {
     const Workers workers;
-    for (const SmallScene& small : {roughGlass(), smoothCasters(), dispersion()}) {
+    for (const SmallScene& small : {roughGlass(), smoothCasters(), dispersion(), veils()}) {
         const Scene scene = made(small, workers);
         Rendering reference{Method::Bdpt, 64, 6};
         reference.width = reference.height = 20;

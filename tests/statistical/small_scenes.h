@@ -162,9 +162,24 @@ inline SmallScene dispersion() {
     return {"dispersion", b.description()};
 }
 
+/// A floor that lets half of the light pass to another one under it, below smooth glass and before a mirror.
+inline SmallScene veils() {
+    using namespace detail;
+    check::SceneBuilder b;
+    Material veil = coloured({0.7F, 0.6F, 0.5F});
+    veil.alphaMode = AlphaMode::Blend;
+    veil.baseColor.a = 0.4F;
+    addCorner(b, veil, coloured({0.5F, 0.5F, 0.7F}));
+    b.quad({-1, -0.3, 1}, {2, 0, 0}, {0, 0, -2}, coloured({0.3F, 0.7F, 0.3F}));
+    b.sphere({-0.3, 0.5, 0.1}, 0.4, 12, check::glass(1.5F), true);
+    b.quad({0.75, 0.0, 0.8}, {0, 0, -1.4}, {0, 1.2, 0}, check::mirror(0.9F));
+    b.square({0.0, 2.2, 0.2}, {0, -1, 0}, 1.4, check::lamp(1.0F));
+    return {"veils", b.description()};
+}
+
 inline std::vector<SmallScene> smallScenes() {
-    return {roughGlass(),    deltaLights(), sky(),        layersOfGlass(),
-            smoothCasters(), thinLens(),    normalMaps(), dispersion()};
+    return {roughGlass(), deltaLights(), sky(),        layersOfGlass(), smoothCasters(),
+            thinLens(),   normalMaps(),  dispersion(), veils()};
 }
 
 }  // namespace pellucid::testing

@@ -38,6 +38,8 @@ struct SceneOptions {
 struct SurfaceHit {
     SurfacePoint point;
     float distance = 0.0F;
+    /// Probability that a ray which meets the surface here does not pass it, (0, 1]: alpha.
+    float coverage = 1.0F;
 };
 
 class Scene {

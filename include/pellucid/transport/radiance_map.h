@@ -2,7 +2,8 @@
 /// them at photons; but then bright clumps have the small Voronoi cells or reach into the dark beside them, a bias of some
 /// per cent], found by the nearest one. Direct light there is sampled from the lamps (no blur, no loss at edges); all other
 /// light is estimated from the photons that the place could reach along the surface, over the area that it could reach:
-/// short rays in eight sectors end the kernel at walls, so that light neither leaks through them nor is lost beside them.
+/// short rays in eight sectors end the kernel at walls, so that light neither leaks through them nor is lost beside them, and
+/// others find where the surface ends, so that small bodies are not darker than they are.
 /// Bias enters by the kernel of that estimate.
 #pragma once
 
