@@ -37,6 +37,8 @@ constexpr std::uint64_t kPilotPass = 0x70696c6f74ULL;
 /// many pixels.
 constexpr std::uint32_t kGlobalPaths = 75'000;
 constexpr double kManyReceivers = 4'000, kLeastOfGlobal = 0.1;
+/// Of the shorter side of the image: the largest radius of a record.
+constexpr float kMostOfSide = 0.125F;
 /// Caustic photon paths an iteration: so many that this many are useful, between two bounds; all for a pixel that sees a
 /// receiver.
 constexpr double kUsefulPerPixel = 0.3, kPathsPerPixel = 0.5, kMostPathsPerPixel = 2.0;
@@ -247,6 +249,9 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
                        : s.cacheMetric == "tabellion" ? CacheMetric::Tabellion
                                                       : CacheMetric::Hessian;
     if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);
+    // A record of few rays in the open may see nothing at all; it must not say so to half of a small image.
+    const float side = kMostOfSide * static_cast<float>(std::min(camera.width(), camera.height()));
+    plan.maxSpacing = std::clamp(side, plan.minSpacing, plan.maxSpacing);
     if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
     const double receivers = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
     decide(plan, "irradiance cache", "on",
