@@ -143,12 +143,17 @@ LearntLight IndirectLight::nextGeneration() {
 }
 
 bool IndirectLight::renew(const Maps& maps, RenderClock& clock, const Progress& progress) {
-    if (!frozen_) return makeGeneration(nextGeneration(), maps, clock, progress);
-    useFrozen();
-    return true;
+    return makeGeneration(0, maps, clock, progress);
 }
 
-bool IndirectLight::makeGeneration(LearntLight light, const Maps& maps, RenderClock& clock, const Progress& progress) {
+bool IndirectLight::makeGeneration(std::uint32_t refinements, const Maps& maps, RenderClock& clock,
+                                   const Progress& progress) {
+    if (frozen_) {
+        useFrozen();
+        return true;
+    }
+    LearntLight light = nextGeneration();
+    light.refinements = refinements;
     const std::uint64_t raysBefore = rays();
     const WallClock::time_point began = WallClock::now();
     const GenerationState stateBefore = state_;
@@ -253,9 +258,7 @@ bool IndirectLight::restoreFrom(const GenerationState& state, const Maps& maps, 
     if (view_.plan.cache && state.next > 0) {
         state_ = state;
         --state_.next;
-        LearntLight light = nextGeneration();
-        light.refinements = state.refinements;
-        whole = makeGeneration(std::move(light), maps, clock, progress);
+        whole = makeGeneration(state.refinements, maps, clock, progress);
     }
     state_ = state;
     light_.rays = state.raysOfGeneration;  // with those of records that were made again since

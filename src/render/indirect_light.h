@@ -41,14 +41,14 @@ public:
     /// Whether a new generation should be made before the next iteration. `eyes`: what eye passes have cost.
     [[nodiscard]] bool due(const Pace& pace, const StageRecord& eyes) const;
     /// Makes it: fresh global photons and fresh records, with an error bound that tightens; or what is known, and more of it.
-    /// `maps`: those of the caustic side. A budget of time cuts it short, and so does `progress`: false, and all is as it was
-    /// before, but that the first one's records stay as far as they came.
+    /// `maps`: those of the caustic side. A budget of time cuts it short, and so does `progress`: false, and records and
+    /// state() are as they were before, but that the first one's records stay as far as they came.
     bool renew(const Maps& maps, RenderClock& clock, const Progress& progress);
     /// How many times as many gather rays the running generation's records should have had, by what noise they and the eye
     /// leave in the image; 1: as they are. Asked before an iteration that makes no new generation.
     [[nodiscard]] double refinement(const Pace& pace, const StageRecord& eyes) const;
     /// Makes the running generation's records anew, with so many times as many gather rays of the same map. Where `progress`
-    /// cuts it short: false, and all is as it was before.
+    /// cuts it short: false, and records and state() are as they were before.
     bool refine(double factor, const Maps& maps, RenderClock& clock, const Progress& progress);
     /// Tells it of eye rays that the running generation has served.
     void served(std::uint64_t rays) noexcept {
@@ -80,7 +80,8 @@ private:
     void save() const;
     void useFrozen();
     [[nodiscard]] LearntLight nextGeneration();
-    bool makeGeneration(LearntLight light, const Maps& maps, RenderClock& clock, const Progress& progress);
+    /// The next one, with its records made again so often at once.
+    bool makeGeneration(std::uint32_t refinements, const Maps& maps, RenderClock& clock, const Progress& progress);
     [[nodiscard]] double patience(const Pace& pace) const;
     [[nodiscard]] bool hasRoomForNext(const Pace& pace, const StageRecord& eyes, double raysBefore) const;
     [[nodiscard]] std::unique_ptr<const GatherGuide> makeMap(LearntLight& light, const Maps& maps);

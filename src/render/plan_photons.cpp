@@ -250,9 +250,9 @@ void planIndirect(Plan& plan, const Scene& scene, const Camera& camera, const Re
                                                       : CacheMetric::Hessian;
     if (s.minSpacing > 0.0) plan.minSpacing = static_cast<float>(s.minSpacing);
     // A record of few rays in the open may see nothing at all; it must not say so to half of a small image.
-    const float side = kMostOfSide * static_cast<float>(std::min(camera.width(), camera.height()));
-    plan.maxSpacing = std::clamp(side, plan.minSpacing, plan.maxSpacing);
-    if (s.maxSpacing > 0.0) plan.maxSpacing = std::max(static_cast<float>(s.maxSpacing), plan.minSpacing);
+    const float ofSide = kMostOfSide * static_cast<float>(std::min(camera.width(), camera.height()));
+    const float most = s.maxSpacing > 0.0 ? static_cast<float>(s.maxSpacing) : std::min(plan.maxSpacing, ofSide);
+    plan.maxSpacing = std::max(most, plan.minSpacing);
     const double receivers = 100.0 * static_cast<double>(seen.receivers) / static_cast<double>(seen.points.size());
     decide(plan, "irradiance cache", "on",
            fmt::format("{:.1f} % of the pixels end at a diffuse surface{}", receivers,

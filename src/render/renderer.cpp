@@ -59,9 +59,10 @@ RenderRecord Renderer::plan() {
 
 bool Renderer::iterate() {
     const double once = indirect_.seconds(), began = clock_.elapsed();
-    const bool whole = makeMaps();
+    const bool whole = makeRecords();
     if (!whole && iteration_ > 0) return false;
     cutShort_ = !whole;
+    shootPhotons();
     tracePixels();
     caustics_.countUse();
     secondsOfIteration_ = clock_.elapsed() - began - (indirect_.seconds() - once);
@@ -69,18 +70,17 @@ bool Renderer::iterate() {
     return whole;
 }
 
-/// What the eye paths of this iteration read.
-bool Renderer::makeMaps() {
+bool Renderer::makeRecords() {
     const Pace now = pace();
-    bool whole = true;
-    if (indirect_.due(now, eyes_.stage()))
-        whole = indirect_.renew(caustics_.maps(source_), clock_, progress_);
-    else if (const double factor = indirect_.refinement(now, eyes_.stage()); factor > 1.0)
-        whole = indirect_.refine(factor, caustics_.maps(source_), clock_, progress_);
-    if (!whole && iteration_ > 0) return false;
+    if (indirect_.due(now, eyes_.stage())) return indirect_.renew(caustics_.maps(source_), clock_, progress_);
+    if (const double factor = indirect_.refinement(now, eyes_.stage()); factor > 1.0)
+        return indirect_.refine(factor, caustics_.maps(source_), clock_, progress_);
+    return true;
+}
+
+void Renderer::shootPhotons() {
     if (view_.plan.causticMap) caustics_.pass(source_, film_, iteration_);
     if (view_.plan.otherPhotons) others_.pass(iteration_);
-    return whole;
 }
 
 void Renderer::tracePixels() {

@@ -37,7 +37,9 @@ public:
 private:
     /// False where a stop cut its records short: then it is left out, but for the first, whose picture is all that there is.
     [[nodiscard]] bool iterate();
-    [[nodiscard]] bool makeMaps();
+    /// Of the indirect side, where they are due. False where a stop cut them short.
+    [[nodiscard]] bool makeRecords();
+    void shootPhotons();
     void renewShares();
     void tracePixels();
     [[nodiscard]] TransportContext eyeContext() const noexcept;

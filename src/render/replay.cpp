@@ -48,7 +48,8 @@ SampleReplay Renderer::replay(PixelAt at, std::uint32_t sample) {
         if (!iterate()) break;
         tell("iterations before the sample");
     }
-    (void)makeMaps();
+    (void)makeRecords();
+    shootPhotons();
     SampleReplay replay = view_.bidirectional() ? replayBidirectional(at) : replayWalk(at);
     replay.width = view_.camera.width();
     replay.height = view_.camera.height();

@@ -16,6 +16,12 @@ constexpr float kLeastMass = 0.1F;
 
 }  // namespace
 
+bool surfaceUnder(const Scene& scene, const glm::vec3& start, const glm::vec3& normal, float depth,
+                  float leastCosine) noexcept {
+    const auto hit = scene.intersect(Ray{start, -normal, depth}, 0.0F);
+    return hit && std::fabs(glm::dot(hit->point.geometricNormal, normal)) >= leastCosine;
+}
+
 float kernelMass(const Scene& scene, const glm::vec3& point, const glm::vec3& normal, float radius, PhotonKernel kernel,
                  float turn, std::uint64_t& rays) noexcept {
     const Frame frame(normal);
@@ -30,11 +36,9 @@ float kernelMass(const Scene& scene, const glm::vec3& point, const glm::vec3& no
         ++rays;
         if (scene.intersect(Ray{start, along, distance}, 0.0F)) continue;
         ++rays;
-        const auto hit =
-            scene.intersect(Ray{start + along * distance, -normal, 2.0F * kMostPlaneDistance * radius}, 0.0F);
-        if (!hit) continue;
-        const Bsdf bsdf = scene.surfaces().bsdf(hit->point, normal);
-        if (glm::dot(bsdf.geometricNormal(), normal) >= kLeastNormalCosine) there += weight;
+        if (surfaceUnder(scene, start + along * distance, normal, 2.0F * kMostPlaneDistance * radius,
+                         kLeastNormalCosine))
+            there += weight;
     }
     return std::max(kLeastMass, there / whole);
 }

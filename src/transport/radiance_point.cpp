@@ -4,6 +4,7 @@
 
 #include <pellucid/math/constants.h>
 #include <pellucid/math/sampler.h>
+#include <pellucid/transport/kernel_mass.h>
 #include <pellucid/transport/walk.h>
 
 namespace pellucid {
@@ -111,8 +112,7 @@ void measureReach(const Scene& scene, RadiancePoint& p) noexcept {
                     down = std::min(kMaxPlaneDistance * distance, p.below);
         const glm::vec3 start = offsetOrigin(p.position, p.normal) + along * distance + p.normal * up;
         ++rays;
-        const auto hit = scene.intersect(Ray{start, -p.normal, kProbeSlack * (up + down)}, 0.0F);
-        if (hit && std::fabs(glm::dot(hit->point.geometricNormal, p.normal)) >= kMinNormalCosine) return end * end;
+        if (surfaceUnder(scene, start, p.normal, kProbeSlack * (up + down), kMinNormalCosine)) return end * end;
     }
     return 0.0F;
 }

@@ -17,15 +17,6 @@ namespace {
 
 using namespace testing;
 
-/// A closed room whose lamp shines at the ceiling: records, more than one generation, and records made again.
-[[nodiscard]] SceneDescription roomLitByItsCeiling() {
-    check::SceneBuilder b;
-    b.box({-1, 0, -1}, {1, 2, 1}, check::lambert(0.7F));
-    b.square({0, 1.0, 0}, {0, 1, 0}, 0.3, check::lamp(10.0F));
-    b.perspective({0, 0.6, 0.9}, {0, 0.5, -1}, 0.9);
-    return b.description();
-}
-
 /// Stops for good when asked for the `last`-th time.
 class Patience {
 public:

@@ -20,16 +20,6 @@ using namespace testing;
 
 constexpr int kSeeds = 10;
 
-/// A closed room whose lamp shines at the ceiling: all light but there is indirect.
-[[nodiscard]] SceneDescription roomLitByItsCeiling() {
-    check::SceneBuilder b;
-    const Material wall = check::lambert(0.7F);
-    b.box({-1, 0, -1}, {1, 2, 1}, wall);
-    b.square({0, 1.0, 0}, {0, 1, 0}, 0.3, check::lamp(10.0F));
-    b.perspective({0, 0.6, 0.9}, {0, 0.5, -1}, 0.9);
-    return b.description();
-}
-
 /// Relative variance over the seeds, on the mean over the pixels, as relmse counts it; and the mean of the estimates' squares.
 struct Spread {
     double variance = 0.0, noise = 0.0, records = 0.0;

@@ -162,7 +162,7 @@ inline SmallScene dispersion() {
     return {"dispersion", b.description()};
 }
 
-/// A floor that lets half of the light pass to another one under it, below smooth glass and before a mirror.
+/// A floor that lets more than half of the light pass to another one under it, below smooth glass and before a mirror.
 inline SmallScene veils() {
     using namespace detail;
     check::SceneBuilder b;
@@ -175,6 +175,15 @@ inline SmallScene veils() {
     b.quad({0.75, 0.0, 0.8}, {0, 0, -1.4}, {0, 1.2, 0}, check::mirror(0.9F));
     b.square({0.0, 2.2, 0.2}, {0, -1, 0}, 1.4, check::lamp(1.0F));
     return {"veils", b.description()};
+}
+
+/// A closed room whose lamp shines at the ceiling: all light but there is indirect.
+inline SceneDescription roomLitByItsCeiling() {
+    check::SceneBuilder b;
+    b.box({-1, 0, -1}, {1, 2, 1}, check::lambert(0.7F));
+    b.square({0, 1.0, 0}, {0, 1, 0}, 0.3, check::lamp(10.0F));
+    b.perspective({0, 0.6, 0.9}, {0, 0.5, -1}, 0.9);
+    return b.description();
 }
 
 inline std::vector<SmallScene> smallScenes() {

@@ -10,6 +10,10 @@
 
 namespace pellucid {
 
+/// Whether a surface of the same side lies within `depth` under `start`: its normal and `normal` have at least this cosine.
+[[nodiscard]] bool surfaceUnder(const Scene& scene, const glm::vec3& start, const glm::vec3& normal, float depth,
+                                float leastCosine) noexcept;
+
 /// `turn` in [0,1) turns the places around the normal. Adds its rays to `rays`. At least one tenth.
 [[nodiscard]] float kernelMass(const Scene& scene, const glm::vec3& point, const glm::vec3& normal, float radius,
                                PhotonKernel kernel, float turn, std::uint64_t& rays) noexcept;
