@@ -13,6 +13,9 @@ namespace {
 /// A triangle counts as large where its farthest corner is more than 0.22 of the viewing distance from its centroid:
 /// below that the area density varies by less than a factor 2.5 over the triangle and costs a third of the time.
 constexpr float kLargeRatio2 = 0.05F;
+/// Scene units. A point closer to the plane of a large triangle than this lies in it but for rounding, which has no say over
+/// which side it is on: a lamp would light its own back, or itself. Rays start farther off.
+constexpr double kLeastHeight = 1e-6;
 
 /// The triangle projected on the unit sphere around the shading point, in double: exact differences of float input.
 struct SphericalTriangle {
@@ -21,14 +24,20 @@ struct SphericalTriangle {
     double solidAngle = 0.0;
 };
 
-/// Empty where the triangle is to be sampled by area: it looks small, or its projection is degenerate.
-/// Solid angle: tan(Omega/2) = |a.(b x c)| / (1 + a.b + b.c + c.a). [VanOosteromStrackee1983, eq. 8]
-std::optional<SphericalTriangle> largeOnSphere(const EmissiveTriangle& t, const glm::vec3& point) noexcept {
+[[nodiscard]] bool looksLarge(const EmissiveTriangle& t, const glm::vec3& point) noexcept {
     const glm::vec3 centroid = (t.corner[0] + t.corner[1] + t.corner[2]) * (1.0F / 3.0F);
     float reach2 = 0.0F;
     for (const glm::vec3& corner : t.corner) reach2 = std::max(reach2, glm::dot(corner - centroid, corner - centroid));
-    if (reach2 < kLargeRatio2 * glm::dot(centroid - point, centroid - point)) return std::nullopt;
+    return reach2 >= kLargeRatio2 * glm::dot(centroid - point, centroid - point);
+}
 
+[[nodiscard]] bool inPlane(const EmissiveTriangle& t, const glm::vec3& point) noexcept {
+    return std::fabs(glm::dot(glm::dvec3(t.normal), glm::dvec3(point) - glm::dvec3(t.corner[0]))) < kLeastHeight;
+}
+
+/// Empty where the triangle's projection is degenerate: then it is to be sampled by area, as where it looks small.
+/// Solid angle: tan(Omega/2) = |a.(b x c)| / (1 + a.b + b.c + c.a). [VanOosteromStrackee1983, eq. 8]
+std::optional<SphericalTriangle> onSphere(const EmissiveTriangle& t, const glm::vec3& point) noexcept {
     const glm::dvec3 p(point);
     SphericalTriangle s{glm::dvec3(t.corner[0]) - p, glm::dvec3(t.corner[1]) - p, glm::dvec3(t.corner[2]) - p};
     for (glm::dvec3* v : {&s.a, &s.b, &s.c}) {
@@ -108,7 +117,9 @@ float sampleSpotCosine(const SpotEmitter& spot, float u) noexcept {
 std::optional<TrianglePoint> sampleTriangle(const EmissiveTriangle& triangle, const glm::vec3& point,
                                             const glm::vec2& u) noexcept {
     TrianglePoint result;
-    if (const auto sphere = largeOnSphere(triangle, point)) {
+    const bool large = looksLarge(triangle, point);
+    if (large && inPlane(triangle, point)) return std::nullopt;
+    if (const auto sphere = large ? onSphere(triangle, point) : std::nullopt) {
         if (!meet(triangle, point, sampleSphericalTriangle(*sphere, glm::dvec2(u)), result)) return std::nullopt;
         result.cosLight = -glm::dot(triangle.normal, result.wi);
         result.pdfSolidAngle = static_cast<float>(1.0 / sphere->solidAngle);
@@ -130,7 +141,10 @@ std::optional<TrianglePoint> sampleTriangle(const EmissiveTriangle& triangle, co
 
 float pdfTriangleSolidAngle(const EmissiveTriangle& triangle, const glm::vec3& point, const glm::vec3& wi,
                             float distance) noexcept {
-    if (const auto sphere = largeOnSphere(triangle, point)) return static_cast<float>(1.0 / sphere->solidAngle);
+    if (looksLarge(triangle, point)) {
+        if (inPlane(triangle, point)) return 0.0F;
+        if (const auto sphere = onSphere(triangle, point)) return static_cast<float>(1.0 / sphere->solidAngle);
+    }
     return areaPdf(triangle, glm::dot(triangle.normal, wi), distance);
 }
 

@@ -44,11 +44,12 @@ struct TrianglePoint {
 };
 
 /// Uniform in solid angle where the triangle looks large from `point`, uniform in area elsewhere: a function of the two
-/// alone. Empty where the direction or its density is not finite (the point in the triangle's plane, for one).
+/// alone. Empty where the point lies in the plane of a triangle that looks large, and where the direction or its density is
+/// not finite.
 [[nodiscard]] std::optional<TrianglePoint> sampleTriangle(const EmissiveTriangle& triangle, const glm::vec3& point,
                                                           const glm::vec2& u) noexcept;
 
-/// The density of sampleTriangle() for direction `wi`, which meets the triangle at `distance`.
+/// The density of sampleTriangle() for direction `wi`, which meets the triangle at `distance`; 0 where that is empty.
 [[nodiscard]] float pdfTriangleSolidAngle(const EmissiveTriangle& triangle, const glm::vec3& point, const glm::vec3& wi,
                                           float distance) noexcept;
 

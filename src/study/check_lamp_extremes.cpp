@@ -121,6 +121,25 @@ std::vector<Finding> onTheWall(const CheckContext& context) {
     return irradiance(context, b, expected, "irradiance of the wall", 0.02, 48);
 }
 
+/// A tilted lamp that reflects, from behind: by rounding alone its points lie before it or behind, and it must light none.
+std::vector<Finding> backOfALamp(const CheckContext& context) {
+    const glm::dvec3 back = glm::normalize(glm::dvec3(0.3, 0.1, 1.0)), right = glm::normalize(glm::cross(kUp, back));
+    const glm::dvec3 middle(0.7, 0.4, -0.5);  // nowhere near the scene's, where floats would be finer
+    const auto other = squareAt({-0.3, -0.2, 1.0}, 0.3);
+    Material reflecting = lamp(5000.0F);
+    reflecting.baseColor = lambert(static_cast<float>(kRho)).baseColor;
+    SceneBuilder b;
+    b.square(middle, -back, 0.4, reflecting);
+    b.quad(other[0], other[1] - other[0], other[3] - other[0], lamp(3.0F));
+    b.view(middle, back, kPatch, 0.3);
+    const double expected =
+        3.0 * meanOverSquare([&](double u, double v) {
+            return polygonIrradiance(middle + kPatch * ((u - 0.5) * right + (v - 0.5) * glm::cross(back, right)), back,
+                                     other);
+        });
+    return irradiance(context, b, expected, "irradiance by another lamp");
+}
+
 std::vector<Finding> tenThousandLights(const CheckContext& context) {
     constexpr int kSide = 100;
     SceneBuilder b = floorScene(2.0);
@@ -210,6 +229,8 @@ void addLampExtremes(Cases& cases) {
         touchingWall);
     add("extreme-lamp-on-a-wall", "a lamp whose edge lies on the wall that it lights", "[Lambert1760]", true,
         onTheWall);
+    add("extreme-back-of-a-lamp", "a lamp that reflects does not light its own back", "[Lambert1760]", true,
+        backOfALamp);
     add("extreme-ten-thousand-lights", "sum I cos / d^2 over 10,000 point lights", "inverse square law", true,
         tenThousandLights);
     add("extreme-burning-texel", "one texel nine orders brighter than the rest", "integral of the bilinear map", true,
