@@ -103,7 +103,8 @@ struct RoughMirror {
 [[nodiscard]] Known roughness(double value) {
     const RoughMirror m{value * value};
     SceneBuilder b;
-    b.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, lambert(static_cast<float>(kRho)));
+    // No floor before the lamp: what it lights there a rough mirror would throw back to where we look.
+    b.quad({-1, -1, 0}, {1.2, 0, 0}, {0, 2, 0}, lambert(static_cast<float>(kRho)));
     b.quad({1, -1, 0}, {0, 0, 2}, {0, 2, 0}, mirror(1.0F, static_cast<float>(value)));
     b.quad({0.2, -m.half, 0.6 - m.half}, {0, 2.0 * m.half, 0}, {0, 0, 2.0 * m.half},
            lamp(static_cast<float>(m.radiance)));
