@@ -1,5 +1,6 @@
 /// Scenes that nobody thought of: shapes, materials, textures, lights and views drawn at random, so that estimators are held
-/// against each other where no one looked. The same number gives the same scene.
+/// against each other where no one looked. The same number gives the same scene, with the same
+/// compiler: arguments are drawn in its order.
 #pragma once
 
 #include <algorithm>
@@ -183,8 +184,8 @@ private:
         glm::dvec3 p(0.5 * std::cos(angle), between(0.25, 1.0), 0.5 * std::sin(angle));
         const double r = between(0.1, 0.22);
         const double stands = u();
-        if (stands < 0.2) p.y = r;
-        if (stands > 0.9) p.y = 0.5 * r;  // half in the ground
+        if (stands < 0.2) p.y = r + 0.002;  // on the ground, no face in it: see addPool()
+        if (stands > 0.9) p.y = 0.5 * r;    // half in the ground
         const std::size_t before = builder_.description().geometries.size();
         Material m = cover(true);
         if (chance(0.08)) {
