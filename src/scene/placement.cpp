@@ -53,6 +53,14 @@ Placement place(const Normalisation& n, const Geometry& geometry) {
     return p;
 }
 
+Corners cornersIn(const Placement& placement, const Mesh& mesh, std::uint32_t primitive) noexcept {
+    const glm::uvec3 t = mesh.triangles[primitive];
+    if (placement.baked) return {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
+    const glm::mat4& m = placement.toScene;
+    return {glm::vec3(m * glm::vec4(mesh.positions[t.x], 1.0F)), glm::vec3(m * glm::vec4(mesh.positions[t.y], 1.0F)),
+            glm::vec3(m * glm::vec4(mesh.positions[t.z], 1.0F))};
+}
+
 void bake(Placement& placement, Mesh& mesh) {
     for (glm::vec3& p : mesh.positions) p = glm::vec3(placement.toScene * glm::vec4(p, 1.0F));
     for (glm::vec3& n : mesh.normals) n = placement.normalToScene * n;

@@ -2,6 +2,9 @@
 /// nothing else depends on world units.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include <glm/glm.hpp>
 
 #include <pellucid/geometry/mesh.h>
@@ -22,6 +25,9 @@ struct Placement {
 [[nodiscard]] Normalisation normalise(const SceneDescription& description);
 [[nodiscard]] glm::dmat4 normalisedTransform(const Normalisation& n, const glm::dmat4& toWorld);
 [[nodiscard]] Placement place(const Normalisation& n, const Geometry& geometry);
+using Corners = std::array<glm::vec3, 3>;
+/// Of a triangle of the mesh that is placed so, as it winds.
+[[nodiscard]] Corners cornersIn(const Placement& placement, const Mesh& mesh, std::uint32_t primitive) noexcept;
 /// A mesh that stands in one place only is moved there once and for all.
 void bake(Placement& placement, Mesh& mesh);
 

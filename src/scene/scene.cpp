@@ -77,7 +77,7 @@ Scene::Scene(SceneDescription description, std::optional<EnvironmentDescription>
     s.placeGeometry();
     s.buildSurfaces(options.lobeRules);
     if (environment) s.buildEnvironment(*environment, log), s.environmentHash = environment->contentHash;
-    s.mergeCoincidentGlass();
+    s.findCoincidentFaces(log);
     s.buildLights();
     if (options.requireLight && (s.lights->count() == 0 || !(s.lights->totalPower() > 0.0)))
         throw Error(ErrorKind::BadInput, "the scene has no light", s.description.name,
@@ -97,14 +97,13 @@ std::optional<SurfaceHit> Scene::intersect(const Ray& ray, float coin) const noe
     RawHit raw;
     while (s.accel->intersect(current, raw)) {
         SurfaceHit hit{s.surfacePoint(raw), travelled + raw.t};
-        const bool passes = s.isMerged(hit.point);
-        if (!passes && !s.hasAlpha[hit.point.material]) return hit;
-        const float coverage = passes ? 0.0F : s.surfaces->coverage(hit.point);
-        if (coin < coverage) {
-            hit.coverage = coverage;
-            return hit;
+        if (s.isAlone(hit.point)) return hit;
+        const FacesMet met = s.meet(hit.point);
+        for (int i = 0; i < met.count; ++i) {
+            const float coverage = s.surfaces->coverage(met.face[static_cast<std::size_t>(i)]);
+            if (coin < coverage) return SurfaceHit{met.face[static_cast<std::size_t>(i)], hit.distance, coverage};
+            coin = std::min((coin - coverage) / std::max(1.0F - coverage, 1e-12F), 0x1.fffffep-1F);
         }
-        coin = std::min((coin - coverage) / std::max(1.0F - coverage, 1e-12F), 0x1.fffffep-1F);
         const glm::vec3 n = glm::dot(hit.point.geometricNormal, ray.direction) < 0.0F ? -hit.point.geometricNormal
                                                                                       : hit.point.geometricNormal;
         current.origin = offsetOrigin(hit.point.position, n);
@@ -116,15 +115,16 @@ std::optional<SurfaceHit> Scene::intersect(const Ray& ray, float coin) const noe
 
 float Scene::visibility(const Ray& ray) const noexcept {
     const Impl& s = *impl_;
-    if (!s.anyAlpha && !s.anyMerged) return s.accel->occluded(ray) ? 0.0F : 1.0F;
+    if (!s.anyAlpha && s.coincident.none()) return s.accel->occluded(ray) ? 0.0F : 1.0F;
     Ray current = ray;
     float transmittance = 1.0F;
     RawHit raw;
     while (transmittance > 0.0F && s.accel->intersect(current, raw)) {
         const SurfacePoint p = s.surfacePoint(raw);
-        const bool passes = s.isMerged(p);
-        if (!passes && !s.hasAlpha[p.material]) return 0.0F;
-        if (!passes) transmittance *= 1.0F - s.surfaces->coverage(p);
+        if (s.isAlone(p)) return 0.0F;
+        const FacesMet met = s.meet(p);
+        for (int i = 0; i < met.count; ++i)
+            transmittance *= 1.0F - s.surfaces->coverage(met.face[static_cast<std::size_t>(i)]);
         const glm::vec3 n = glm::dot(p.geometricNormal, ray.direction) < 0.0F ? -p.geometricNormal : p.geometricNormal;
         current.origin = offsetOrigin(p.position, n);
         current.tMax -= raw.t;

@@ -9,9 +9,17 @@
 
 #include <pellucid/scene/scene.h>
 
+#include "coincident_faces.h"
 #include "placement.h"
 
 namespace pellucid {
+
+/// A face with holes, then what lies behind them: one of the two, both, or neither where two bodies of the same glass touch.
+struct FacesMet {
+    std::array<SurfacePoint, 2> face;
+    int count = 0;
+    void add(const SurfacePoint& p) noexcept { face[static_cast<std::size_t>(count++)] = p; }
+};
 
 struct Scene::Impl {
     SceneDescription description;
@@ -23,15 +31,13 @@ struct Scene::Impl {
     std::unique_ptr<Lights> lights;
     std::vector<bool> hasAlpha;  ///< by material
     bool anyAlpha = false;
-    /// By geometry and primitive: one of two faces of the same glass that coincide. Rays pass: there is no interface.
-    std::vector<std::vector<bool>> merged;
-    bool anyMerged = false;
+    CoincidentFaces coincident;
     std::uint64_t triangleCount = 0;
     LobeKinds kinds = kNoLobe;
     std::string hash, environmentHash;
 
     [[nodiscard]] SurfacePoint surfacePoint(const RawHit& hit) const noexcept;
-    [[nodiscard]] std::array<glm::vec3, 3> corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept;
+    [[nodiscard]] Corners corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept;
     void addPunctual(Lights::Parts& parts) const;
     void addEmissive(Lights::Parts& parts) const;
     void buildLights();
@@ -39,10 +45,14 @@ struct Scene::Impl {
     void placeGeometry();
     void buildSurfaces(const LobeRules& rules);
     void buildEnvironment(const EnvironmentDescription& sky, const LogSink& log);
-    void mergeCoincidentGlass();
-    [[nodiscard]] bool isMerged(const SurfacePoint& p) const noexcept {
-        return anyMerged && !merged[p.geometry].empty() && merged[p.geometry][p.primitive];
+    void findCoincidentFaces(const LogSink& log);
+    /// Whether a ray that hits this surface may go on, or may meet another one in the same place.
+    [[nodiscard]] bool isAlone(const SurfacePoint& p) const noexcept {
+        return !hasAlpha[p.material] && !coincident.shares({p.geometry, p.primitive});
     }
+    /// What a ray that hits `p` meets there, in order.
+    [[nodiscard]] FacesMet meet(const SurfacePoint& p) const noexcept;
+    void addGlass(const SurfacePoint& p, FacesMet& met) const noexcept;
 };
 
 /// A camera that frames the whole scene from the front, a little from the right and above.

@@ -19,7 +19,7 @@ struct Interpolation {
     }
 };
 
-void setNormals(SurfacePoint& p, const std::array<glm::vec3, 3>& corners, const Mesh& mesh, const Placement& placement,
+void setNormals(SurfacePoint& p, const Corners& corners, const Mesh& mesh, const Placement& placement,
                 const Interpolation& at) noexcept {
     const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
     const glm::dvec3 cross = glm::cross(b - a, c - a);
@@ -46,8 +46,8 @@ void setGivenTangent(SurfacePoint& p, const Mesh& mesh, const Placement& placeme
 }
 
 /// The tangent along which the texture's u grows.
-void setTextureTangent(SurfacePoint& p, const std::array<glm::vec3, 3>& corners, const std::vector<glm::vec2>& uvs,
-                       const glm::uvec3& t, bool mirrored) noexcept {
+void setTextureTangent(SurfacePoint& p, const Corners& corners, const std::vector<glm::vec2>& uvs, const glm::uvec3& t,
+                       bool mirrored) noexcept {
     const auto& [a, b, c] = corners;
     const glm::vec2 d1 = uvs[t.y] - uvs[t.x], d2 = uvs[t.z] - uvs[t.x];
     const float det = d1.x * d2.y - d1.y * d2.x;
@@ -62,13 +62,8 @@ void setTextureTangent(SurfacePoint& p, const std::array<glm::vec3, 3>& corners,
 
 }  // namespace
 
-std::array<glm::vec3, 3> Scene::Impl::corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
-    const Mesh& mesh = description.meshes[description.geometries[geometry].mesh];
-    const glm::uvec3 t = mesh.triangles[primitive];
-    if (placements[geometry].baked) return {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
-    const glm::mat4& m = placements[geometry].toScene;
-    return {glm::vec3(m * glm::vec4(mesh.positions[t.x], 1.0F)), glm::vec3(m * glm::vec4(mesh.positions[t.y], 1.0F)),
-            glm::vec3(m * glm::vec4(mesh.positions[t.z], 1.0F))};
+Corners Scene::Impl::corners(std::uint32_t geometry, std::uint32_t primitive) const noexcept {
+    return cornersIn(placements[geometry], description.meshes[description.geometries[geometry].mesh], primitive);
 }
 
 /// Recomputes the hit from its barycentrics in double, so that its error does not grow with the ray's length.
@@ -76,7 +71,7 @@ SurfacePoint Scene::Impl::surfacePoint(const RawHit& hit) const noexcept {
     const Mesh& mesh = description.meshes[description.geometries[hit.geometry].mesh];
     const Placement& placement = placements[hit.geometry];
     const glm::uvec3 t = mesh.triangles[hit.primitive];
-    const std::array<glm::vec3, 3> abc = corners(hit.geometry, hit.primitive);
+    const Corners abc = corners(hit.geometry, hit.primitive);
     const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v), w = 1.0 - u - v;
     const Interpolation at{t, static_cast<float>(w), hit.u, hit.v};
     SurfacePoint p;

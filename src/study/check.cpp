@@ -39,6 +39,7 @@ const std::vector<CheckCase>& checkCases() {
         check::addScaleExtremes(list);
         check::addMaterialExtremes(list);
         check::addGeometryExtremes(list);
+        check::addCoincidentFaces(list);
         check::addLampExtremes(list);
         check::addSightExtremes(list);
         check::addSizeExtremes(list);

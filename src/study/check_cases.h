@@ -22,7 +22,8 @@ void addMonteCarlo(Cases& cases);        ///< the lecture's claims
 void addEnergy(Cases& cases);            ///< the account of the photon passes
 void addScaleExtremes(Cases& cases);     ///< size, place
 void addMaterialExtremes(Cases& cases);  ///< albedo, ior, roughness
-void addGeometryExtremes(Cases& cases);  ///< bad triangles, coincident faces, open glass
+void addGeometryExtremes(Cases& cases);  ///< bad triangles, thin gaps, open glass
+void addCoincidentFaces(Cases& cases);   ///< glass on a table, water in a glass, a lamp in a ceiling
 void addLampExtremes(Cases& cases);      ///< lamps and environments
 void addSightExtremes(Cases& cases);     ///< radiances, mirrors, reflections without number
 void addSizeExtremes(Cases& cases);      ///< a million instances, a huge environment

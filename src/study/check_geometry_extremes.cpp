@@ -1,4 +1,4 @@
-// Extremes of geometry: triangles that are none, faces that coincide, glass that is not closed. The reference is the
+// Extremes of geometry: triangles that are none, thin gaps, glass that is not closed. The reference is the
 // same scene without them.
 #include <cmath>
 
@@ -77,28 +77,6 @@ std::vector<Finding> badTriangles(const CheckContext& context) {
     return all;
 }
 
-/// Two slabs of one glass that touch are one slab.
-std::vector<Finding> coincidentGlass(const CheckContext& context) {
-    std::vector<Finding> all;
-    for (const double degrees : {0.0, 40.0}) {
-        const double angle = degrees * kPiD / 180.0;
-        SceneBuilder b;
-        b.box({-3, -3, 0}, {3, 3, 0.125}, glass(1.5F));
-        b.box({-3, -3, 0.125}, {3, 3, 0.25}, glass(1.5F));
-        b.square({0, 0, -0.5}, kUp, 3.0, lamp(1.0F));
-        b.view(glm::dvec3(0.0), {std::sin(angle), 0, std::cos(angle)}, 0.5, 2.0);
-        append(all, measure(context, {b.description(),
-                                      {},
-                                      slabTransmittance(std::cos(angle), 1.5),
-                                      1.0,
-                                      fmt::format("transmittance at {:.0f} deg", degrees),
-                                      {{Method::Path, 16, 0.0}, {Method::Photon, 32, 0.0, 0.03}},
-                                      16,
-                                      smallSettings()}));
-    }
-    return all;
-}
-
 /// A gap of 1e-5 of the scene is air: two slabs, (1 - R) / (1 + 3 R).
 std::vector<Finding> thinGap(const CheckContext& context) {
     SceneBuilder b;
@@ -152,26 +130,6 @@ std::vector<Finding> brokenGlass(const CheckContext& context) {
     return all;
 }
 
-/// Two floors in one plane, of 0.2 and 0.6: which one is seen is left open, but it is one of them.
-std::vector<Finding> coplanarFaces(const CheckContext& context) {
-    SceneBuilder b;
-    b.square(glm::dvec3(0.0), kUp, 1.0, lambert(0.2F));
-    b.quad({-1.3, -1.1, 0}, {2.4, 0, 0}, {0, 2.1, 0}, lambert(0.6F));
-    b.point(kLight, 2.0);
-    b.view(glm::dvec3(0.0), kUp, kPatch, 0.3);
-    const double irradiance = meanOverSquare([](double u, double v) {
-        return pointIrradiance({kPatch * (u - 0.5), kPatch * (v - 0.5), 0.0}, kUp, kLight, 2.0);
-    });
-    return measure(context, {b.description(),
-                             {},
-                             0.4,
-                             kPiD / irradiance,
-                             "reflectance seen, 0.2 to 0.6",
-                             {{Method::Path, 2, 0.5, 0.3}, {Method::Photon, 4, 0.5, 0.3}},
-                             16,
-                             smallSettings()});
-}
-
 }  // namespace
 
 void addGeometryExtremes(Cases& cases) {
@@ -180,8 +138,6 @@ void addGeometryExtremes(Cases& cases) {
     };
     add("extreme-bad-triangles", "triangles without area, slivers, duplicates and bad normals change nothing", false,
         badTriangles);
-    add("extreme-coplanar-faces", "two floors in one plane show one of the two", true, coplanarFaces);
-    add("extreme-coincident-glass", "two touching slabs of one glass are one slab", true, coincidentGlass);
     add("extreme-thin-gap", "a gap of 1e-4 m between slabs of 6 m is air", true, thinGap);
     add("extreme-broken-glass", "glass that is open, doubled, inside out or no manifold ends finite", true,
         brokenGlass);

@@ -60,9 +60,10 @@ LobeKinds transmittingKind(const Material& m, float roughness, const LobeRules& 
     return facetKind(roughness, isVolume(m) ? rules.glassCastRoughness : rules.castRoughness, rules);
 }
 
-/// True when the facets of a body with this ior turn light so little that it goes on as through a smooth face.
-bool turnsLittle(const Material& m, float alpha) noexcept {
-    return isVolume(m) && m.ior > 0.0F && std::fabs(m.ior - 1.0F) * std::min(alpha, 0.1F) < kLeastTurn;
+/// True when the facets of a body with this ior, relative to what it stands in, turn light so little that it goes on as
+/// through a smooth face.
+bool turnsLittle(const Material& m, float ior, float alpha) noexcept {
+    return isVolume(m) && ior > 0.0F && std::fabs(ior - 1.0F) * std::min(alpha, 0.1F) < kLeastTurn;
 }
 
 Resolved resolveFactors(const Material& m) noexcept {
@@ -157,11 +158,12 @@ glm::vec3 bentNormal(const glm::vec3& n, const glm::vec3& g, const glm::vec3& wo
     return best;
 }
 
-Lobe dielectric(const Material& m, const Resolved& r, float weight, bool backSide, Wave wave,
+/// Both iors are relative to what lies before the face; `smoothIor`, of a smooth one, at the wavelength.
+Lobe dielectric(const Material& m, const Resolved& r, float weight, bool backSide, float roughIor, float smoothIor,
                 const LobeRules& rules) noexcept {
     const float alpha = alphaOf(r.roughness, rules);
-    const bool smooth = alpha == 0.0F || turnsLittle(m, alpha);
-    const float ior = smooth && isVolume(m) && m.ior > 0.0F ? iorAt(m.ior, m.dispersion, wave) : m.ior;
+    const bool smooth = alpha == 0.0F || turnsLittle(m, roughIor, alpha);
+    const float ior = smooth ? smoothIor : roughIor;
     DielectricLobe lobe{r.baseColor, ior, smooth ? 0.0F : alpha, r.specular, !isVolume(m)};
     if (isVolume(m) && backSide && ior > 0.0F) lobe.eta = 1.0F / ior;
     return {lobe, weight, 0.0F, smooth ? kSpecular : transmittingKind(m, r.roughness, rules), smooth};
@@ -170,7 +172,7 @@ Lobe dielectric(const Material& m, const Resolved& r, float weight, bool backSid
 bool dispersesIn(const Material& m, const LobeRules& rules) noexcept {
     if (!(m.dispersion > 0.0F && m.transmission > 0.0F && isVolume(m) && m.ior > 1.0F)) return false;
     const float alpha = alphaOf(m.roughness, rules);
-    return m.metallicRoughnessTexture || alpha == 0.0F || turnsLittle(m, alpha);
+    return m.metallicRoughnessTexture || alpha == 0.0F || turnsLittle(m, m.ior, alpha);
 }
 
 /// Every kind of facet lobe that the material's roughness can take.
@@ -184,7 +186,7 @@ LobeKinds kindsOf(const Material& m, const LobeRules& rules) noexcept {
     LobeKinds kinds = m.metallic > 0.0F ? facets : kNoLobe;
     if (m.metallic >= 1.0F && !m.metallicRoughnessTexture) return kinds;
     if (m.transmission > 0.0F) {
-        const bool smooth = turnsLittle(m, m.roughness * m.roughness);
+        const bool smooth = turnsLittle(m, m.ior, m.roughness * m.roughness);
         kinds = kinds | (smooth ? kSpecular : transmittingKind(m, m.roughness, rules));
         if (m.metallicRoughnessTexture) kinds = kinds | kSpecular;
     }
@@ -251,7 +253,8 @@ Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo, Wave wav
     glm::vec3 normal = normalFor(m, point, wo, backSide);
     if (metal > 0.0F || glass > 0.0F) {
         const bool refracts = glass > 0.0F && isVolume(m) && m.ior > 0.0F;
-        normal = bentNormal(normal, geometric, wo, !refracts ? 0.0F : backSide ? 1.0F / m.ior : m.ior);
+        const float ior = relativeIor(point, {});
+        normal = bentNormal(normal, geometric, wo, !refracts ? 0.0F : backSide ? 1.0F / ior : ior);
     }
     Bsdf result(Frame(normal), geometric, backSide, isVolume(m) && glass > 0.0F);
     if (m.normalTexture) result.setUnmappedNormal(unmappedNormalFor(point, wo, backSide));
@@ -265,8 +268,20 @@ Bsdf SurfaceModel::bsdf(const SurfacePoint& point, const glm::vec3& wo, Wave wav
         const float alpha = alphaOf(r.roughness, rules_);
         result.add({ConductorLobe{r.baseColor, alpha}, metal, 0.0F, facetKind(r.roughness, rules_), alpha == 0.0F}, wo);
     }
-    if (glass > 0.0F) result.add(dielectric(m, r, glass, backSide, wave, rules_), wo);
+    if (glass > 0.0F) {
+        if (point.beyond != kAir) r.baseColor *= Rgb{(*materials_)[point.beyond].baseColor};
+        result.add(dielectric(m, r, glass, backSide, relativeIor(point, {}), relativeIor(point, wave), rules_), wo);
+    }
     return result;
+}
+
+float SurfaceModel::relativeIor(const SurfacePoint& point, Wave wave) const noexcept {
+    const auto iorOf = [&](std::uint32_t material) {
+        const Material& m = (*materials_)[material];
+        return isVolume(m) && m.ior > 0.0F ? iorAt(m.ior, m.dispersion, wave) : m.ior;
+    };
+    const float ior = iorOf(point.material);
+    return point.beyond == kAir ? ior : ior / iorOf(point.beyond);
 }
 
 Rgb SurfaceModel::emittedRadiance(const SurfacePoint& point, const glm::vec3& wo) const noexcept {

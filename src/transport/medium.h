@@ -12,14 +12,17 @@ namespace pellucid::medium {
 /// through that body, whatever was carried along; nested bodies and cameras inside of one come out right by this.
 [[nodiscard]] inline Rgb beforeHit(const Scene& scene, const SurfacePoint& point, const Bsdf& bsdf,
                                    const Rgb& carried) noexcept {
-    return bsdf.backSide() && bsdf.bordersVolume() ? scene.surfaces().materials()[point.material].absorption : carried;
+    if (!bsdf.bordersVolume()) return carried;
+    if (bsdf.backSide()) return scene.surfaces().materials()[point.material].absorption;
+    return point.beyond == kAir ? carried : scene.surfaces().absorptionBefore(point);
 }
 
 /// Absorption of a segment that leaves this surface, on the side that `bsdf` was asked from or, `transmitted`, beyond it.
 [[nodiscard]] inline Rgb afterHit(const Scene& scene, const SurfacePoint& point, const Bsdf& bsdf, const Rgb& before,
                                   bool transmitted) noexcept {
     if (!transmitted || !bsdf.bordersVolume()) return before;
-    return bsdf.backSide() ? Rgb(0.0F) : scene.surfaces().materials()[point.material].absorption;
+    return bsdf.backSide() ? scene.surfaces().absorptionBefore(point)
+                           : scene.surfaces().materials()[point.material].absorption;
 }
 
 /// Beer's law. Infinite distances count as a million scene radii.

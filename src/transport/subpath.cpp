@@ -21,8 +21,7 @@ constexpr float kLeastCosine = 1e-7F;
 [[nodiscard]] double deltaPdfRatio(const Scene& scene, const PathVertex& v, const BsdfSample& sample,
                                    Wave wave) noexcept {
     if (!sample.transmitted || !v.bsdf.bordersVolume()) return 1.0;
-    const Material& m = scene.surfaces().materials()[v.hit.point.material];
-    const auto ior = static_cast<double>(iorAt(m.ior, m.dispersion, wave));
+    const auto ior = static_cast<double>(scene.surfaces().relativeIor(v.hit.point, wave));
     const double eta = v.bsdf.backSide() ? 1.0 / ior : ior;
     const auto in = static_cast<double>(cosine(v.toPrevious, v.bsdf.shadingNormal()));
     const auto out = static_cast<double>(cosine(sample.wi, v.bsdf.shadingNormal()));

@@ -8,7 +8,7 @@
 namespace pellucid::wavelength {
 
 [[nodiscard]] inline bool isDue(const Scene& scene, const SurfacePoint& point, Wave wave) noexcept {
-    return !wave.chosen() && scene.surfaces().disperses(point.material);
+    return !wave.chosen() && scene.surfaces().disperses(point);
 }
 
 /// Draws it with the sampler's next number. Returns what the path's light is to be multiplied with.

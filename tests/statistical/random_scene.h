@@ -171,11 +171,10 @@ private:
         window_ = true;
     }
 
-    /// Water on the floor, its sides in the walls or short of them. Its lower face is not the floor's: of two faces in one place
-    /// light from above and looks from above would each meet either.
+    /// Water on the floor, in its plane or under it, its sides in the walls or short of them.
     void addPool() {
         const double half = chance(0.5) ? 1.0 : 0.8;
-        const glm::dvec3 low{-half, chance(0.5) ? 0.002 : -0.01, -half}, high{half, between(0.1, 0.6), half};
+        const glm::dvec3 low{-half, chance(0.5) ? 0.0 : -0.01, -half}, high{half, between(0.1, 0.6), half};
         builder_.box(low, high, check::glass(1.33F, pick({0.0F, 0.5F})));
         tell("pool");
     }
@@ -184,8 +183,8 @@ private:
         glm::dvec3 p(0.5 * std::cos(angle), between(0.25, 1.0), 0.5 * std::sin(angle));
         const double r = between(0.1, 0.22);
         const double stands = u();
-        if (stands < 0.2) p.y = r + 0.002;  // on the ground, no face in it: see addPool()
-        if (stands > 0.9) p.y = 0.5 * r;    // half in the ground
+        if (stands < 0.2) p.y = r;        // on the ground
+        if (stands > 0.9) p.y = 0.5 * r;  // half in the ground
         const std::size_t before = builder_.description().geometries.size();
         Material m = cover(true);
         if (chance(0.08)) {
@@ -203,6 +202,11 @@ private:
         } else if (shape < 0.7) {
             const glm::dvec3 half(0.9 * r, r, 0.7 * r);
             builder_.box(p - half, p + half, m);
+            if (m.thickness > 0.0F && chance(0.4)) {
+                builder_.box(p + glm::dvec3(-0.6 * half.x, half.y, -half.z), p + half * glm::dvec3(0.8, 1.7, 0.5),
+                             chance(0.3) ? m : cover(true));
+                tell("with another on it");
+            }
         } else if (shape < 0.85) {
             Mesh prism = check::rightAngledPrism(0.5F);
             for (glm::vec3& x : prism.positions) x = x * static_cast<float>(r) + glm::vec3(p);
@@ -285,7 +289,7 @@ private:
             if (chance(0.3)) m.baseColor = glm::vec4(0.5F, 0.5F, 0.5F, 1.0F);
             if (chance(0.2)) m.emissiveTexture = texture(true, {0, 0, 0, 255}, {255, 255, 255, 255});
             glm::dvec3 at = somewhere();
-            at.y = chance(0.3) && room ? 2.0 - 1e-4 : 1.9;
+            at.y = chance(0.3) && room ? 2.0 : 1.9;
             builder_.square(at, glm::normalize(glm::dvec3(between(-0.1, 0.1), -1, 0)), half, m);
             tell("+ square lamp");
         } else if (kind < 0.5) {

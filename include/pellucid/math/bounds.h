@@ -26,4 +26,9 @@ struct Bounds {
     [[nodiscard]] float radius() const noexcept { return empty() ? 0.0F : 0.5F * glm::length(diagonal()); }
 };
 
+/// Whether two boxes share a point, be it of their faces.
+[[nodiscard]] inline bool overlap(const Bounds& a, const Bounds& b) noexcept {
+    return glm::all(glm::lessThanEqual(a.lower, b.upper)) && glm::all(glm::lessThanEqual(b.lower, a.upper));
+}
+
 }  // namespace pellucid

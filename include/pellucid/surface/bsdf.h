@@ -90,6 +90,16 @@ public:
     [[nodiscard]] LobeKinds possibleKinds(std::uint32_t material) const noexcept;
     /// Whether its smooth glass has another ior at another wavelength. (Rough glass has one ior.)
     [[nodiscard]] bool disperses(std::uint32_t material) const noexcept;
+    /// Whether light that crosses the surface here has a way for each wavelength.
+    [[nodiscard]] bool disperses(const SurfacePoint& point) const noexcept {
+        return disperses(point.material) || (point.beyond != kAir && disperses(point.beyond));
+    }
+    /// Ior of the body behind the surface over that of what lies before it: air, or a body that touches it.
+    [[nodiscard]] float relativeIor(const SurfacePoint& point, Wave wave) const noexcept;
+    /// Absorption, per scene unit, of what lies before the surface.
+    [[nodiscard]] Rgb absorptionBefore(const SurfacePoint& point) const noexcept {
+        return point.beyond == kAir ? Rgb{0.0F} : (*materials_)[point.beyond].absorption;
+    }
     /// Whether some material has a diffuse lobe under a normal map.
     [[nodiscard]] bool mapsDiffuseNormals() const noexcept;
 

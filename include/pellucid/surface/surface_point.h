@@ -7,6 +7,9 @@
 
 namespace pellucid {
 
+/// No material: air.
+inline constexpr std::uint32_t kAir = 0xffffffffU;
+
 struct SurfacePoint {
     glm::vec3 position{0.0F};
     /// Unit; by the triangle's winding (glTF: counter-clockwise is the front).
@@ -18,6 +21,7 @@ struct SurfacePoint {
     glm::vec2 uv[2]{};                    ///< of both sets, as glTF counts them
     glm::vec4 color{1.0F};                ///< of the vertices, linear: multiplies the base colour
     std::uint32_t geometry = 0, primitive = 0, material = 0;
+    std::uint32_t beyond = kAir;  ///< material of the body that touches this face of glass from its front
     glm::vec2 barycentric{0.0F};  ///< weights of the triangle's second and third corner
 };
 
