@@ -289,8 +289,10 @@ private:
             if (chance(0.3)) m.baseColor = glm::vec4(0.5F, 0.5F, 0.5F, 1.0F);
             if (chance(0.2)) m.emissiveTexture = texture(true, {0, 0, 0, 255}, {255, 255, 255, 255});
             glm::dvec3 at = somewhere();
-            at.y = chance(0.3) && room ? 2.0 : 1.9;
-            builder_.square(at, glm::normalize(glm::dvec3(between(-0.1, 0.1), -1, 0)), half, m);
+            const bool inCeiling = chance(0.3) && room;
+            at.y = inCeiling ? 2.0 : 1.9;
+            const double tilt = between(-0.1, 0.1);
+            builder_.square(at, glm::normalize(glm::dvec3(inCeiling ? 0.0 : tilt, -1, 0)), half, m);
             tell("+ square lamp");
         } else if (kind < 0.5) {
             builder_.sphere(somewhere(), 0.06, 12, check::lamp(30.0F), true);
