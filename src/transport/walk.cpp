@@ -89,17 +89,24 @@ bool Walk::goOn(State& state, const Vertex& vertex, const BsdfSample& sample, co
     return true;
 }
 
-/// Samples the next direction among `sampled` lobes. False: the walk ends.
-bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
+/// Samples the next direction among `sampled` lobes, and the kind that it counts as. None: the walk ends.
+std::optional<BsdfSample> Walk::choose(const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
     const float chooseLobe = sampler.next1D();
     const glm::vec2 u = sampler.next2D();
     auto sample =
         vertex.bsdf.sample(vertex.wo, chooseLobe, u, sampled, TransportMode::Radiance, context_.options.directions);
-    if (!sample) return false;
+    if (!sample) return std::nullopt;
     const Onward on = onward(vertex.bsdf, vertex.wo, *sample, sampled, sampler);
-    if (on.kind == kNoLobe) return false;
+    if (on.kind == kNoLobe) return std::nullopt;
     sample->kind = on.kind;
-    return goOn(state, vertex, *sample, on.weight, sampler);
+    sample->weight = on.weight;
+    return sample;
+}
+
+/// Goes on in a direction among `sampled` lobes. False: the walk ends.
+bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
+    const auto sample = choose(vertex, sampled, sampler);
+    return sample && goOn(state, vertex, *sample, sample->weight, sampler);
 }
 
 bool Walk::splits(const State& state) const noexcept {
@@ -255,20 +262,15 @@ GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexce
         if (wavelength::isDue(context_.scene, hit->point, state.wave)) takeWavelength(state, sampler);
         const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo, state.wave);
         const float footprint = state.ray.footprintAtOrigin + state.ray.footprintSpread * state.pathLength;
-        if ((bsdf.kinds() & kDiffuse) != kNoLobe)
-            return {true,
-                    hit->point.position,
-                    bsdf.shadingNormal(),
-                    bsdf.geometricNormal(),
-                    bsdf.unmappedNormal(),
-                    footprint,
-                    state.ray.absorption,
-                    bsdf.diffuse(),
-                    luminance(state.throughput),
-                    0.0F};
         const Vertex vertex{*hit, bsdf, wo, footprint, glm::vec3(0.0F)};
         sampler.setDimension(dimension + kLobeChoice);
-        if (!scatter(state, vertex, kSpecular | kGlossy, sampler)) return {};
+        const auto onward = choose(vertex, bsdf.kinds(), sampler);
+        const bool diffuse = (bsdf.kinds() & kDiffuse) != kNoLobe;
+        if (diffuse && (!onward || onward->kind == kDiffuse))
+            return {
+                true,      hit->point.position,  bsdf.shadingNormal(), bsdf.geometricNormal(), bsdf.unmappedNormal(),
+                footprint, state.ray.absorption, bsdf.diffuse()};
+        if (!onward || !goOn(state, vertex, *onward, onward->weight, sampler)) return {};
     }
 }
 

@@ -92,8 +92,6 @@ struct GatherPoint {
     float footprint = 0.0F;          ///< width of a pixel there, scene units
     Rgb absorption{0.0F};            ///< of the medium in which the gather rays start, per scene unit
     DiffuseLobe lobe;
-    float throughput = 0.0F;  ///< luminance of the path's throughput there
-    float directLuminance = 0.0F;
 };
 
 struct PixelKernel {
@@ -127,7 +125,7 @@ public:
     /// `distance` receives the length to the first surface (infinity: none).
     [[nodiscard]] Rgb gather(const WalkRay& ray, Sampler& sampler, float& distance) noexcept;
 
-    /// Follows S and G lobes to the first D vertex.
+    /// Follows S and G lobes to a D vertex; where a surface has them all, chance decides by what each is worth.
     [[nodiscard]] GatherPoint findGatherPoint(const WalkRay& ray, Sampler& sampler) noexcept;
 
     /// From now on every vertex is written down there (null: no longer).
@@ -168,6 +166,7 @@ private:
     void addDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled, Sampler& sampler) noexcept;
     void addSplitDirect(State& state, const Vertex& vertex, LobeKinds kinds, LobeKinds sampled,
                         const Sampler& sampler) noexcept;
+    [[nodiscard]] std::optional<BsdfSample> choose(const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] bool scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept;
     [[nodiscard]] float misWeight(float mine, float other) const noexcept;
     /// Of a lamp that a sampled direction met; `pdfLight`: that of next-event estimation.
