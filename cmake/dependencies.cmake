@@ -5,6 +5,7 @@ find_package(glm REQUIRED)
 find_package(embree 3 REQUIRED)
 set(CMAKE_MESSAGE_LOG_LEVEL WARNING) # its Imath remarks at length on a Python module that nobody asked for
 find_package(OpenImageIO 2.4 REQUIRED)
+find_package(OpenEXR 3 REQUIRED) # its limits alone: pictures are read and written by OpenImageIO
 unset(CMAKE_MESSAGE_LOG_LEVEL)
 find_package(TinyGLTF REQUIRED)
 find_package(fmt REQUIRED)
@@ -26,7 +27,7 @@ foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTOR
     endif()
 endforeach()
 
-set(PELLUCID_LINKED embree OpenImageIO::OpenImageIO TinyGLTF::TinyGLTF fmt::fmt tomlplusplus::tomlplusplus)
+set(PELLUCID_LINKED embree OpenImageIO::OpenImageIO OpenEXR::OpenEXR TinyGLTF::TinyGLTF fmt::fmt tomlplusplus::tomlplusplus)
 if(NOT PELLUCID_STD_THREADS)
     list(APPEND PELLUCID_LINKED TBB::tbb)
 endif()

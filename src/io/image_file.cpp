@@ -11,6 +11,7 @@
 
 #include <pellucid/base/error.h>
 
+#include "exr_limits.h"
 #include "file_bytes.h"
 #include "image_read.h"
 #include "png_check.h"
@@ -113,6 +114,7 @@ Image readPixels(const std::filesystem::path& file, WantedChannels wanted) {
     if (isDamagedPng(file)) unreadable("the PNG is not whole", where);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
+    limitExrHeaders();
     const auto input = OIIO::ImageInput::open(where, &config);
     if (!input) unreadable(OIIO::geterror(), where);
 

@@ -13,6 +13,7 @@
 
 #include <pellucid/base/error.h>
 
+#include "exr_limits.h"
 #include "image_read.h"
 #include "png_check.h"
 
@@ -99,6 +100,7 @@ template <class Texel, class Value, class Stored>
 std::shared_ptr<const TextureImage> decodeTexture(std::span<const std::byte> bytes, const std::string& where) {
     const char* format = formatOf(bytes, where);
     if (isPng(bytes) && !isWholePng(bytes)) notDecodable("the PNG is not whole", where);
+    limitExrHeaders();
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     const auto input = OIIO::ImageInput::create(format);
     if (!input || input->supports("ioproxy") == 0) notDecodable(std::string("no decoder for ") + format, where);

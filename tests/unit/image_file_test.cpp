@@ -1,8 +1,12 @@
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -125,6 +129,27 @@ TEST_F(ImageFile, ReadErrorsNameTheFile) {
     writeExr(folder / "a.exr", ramp(64, 64, {"R", "G", "B"}), {});
     fs::resize_file(folder / "a.exr", fs::file_size(folder / "a.exr") / 2);
     expectKind(ErrorKind::BadInput, [&] { (void)readImage(folder / "a.exr"); });
+}
+
+/// OpenEXR itself must refuse a header that claims 16 million columns: it would set up its buffers before we see the size.
+TEST_F(ImageFile, ExrHeadersAreRefusedBeforeBuffersAreSetUp) {
+    writeExr(folder / "a.exr", ramp(8, 4, {"R", "G", "B"}), {});
+    std::string text = bytes("a.exr");
+    const std::string name("dataWindow\0box2i\0", 17);
+    const std::size_t window = text.find(name) + name.size() + 4;
+    ASSERT_LT(window + 16, text.size());
+    const std::int32_t right = 16'000'000;
+    std::memcpy(text.data() + window + 8, &right, sizeof right);
+    write("wide.exr", text);
+    for (const auto& read :
+         std::vector<std::function<void()>>{[&] { (void)readImage(folder / "wide.exr"); }, [&] { (void)decode(text); }})
+        try {
+            read();
+            ADD_FAILURE() << "no error";
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::BadInput);
+            EXPECT_NE(std::string(e.what()).find("data window"), std::string::npos) << e.what();
+        }
 }
 
 TEST_F(ImageFile, CheckWritable) {
