@@ -40,11 +40,12 @@ PixelKernels EyeSide::kernelsAt(const PhotonSides& photons, PixelAt at) const {
     PixelKernels kernels;
     kernels.caustic.footprints = photons.caustics.kernelFootprints(at.x, at.y);
     kernels.others.footprints = photons.others.kernelFootprints(at.x, at.y);
-    if (view_.request.settings.edges != "on") return kernels;
+    const std::string& edges = view_.request.settings.edges;
+    if (edges == "off") return kernels;
     const auto leaves = [&](const PixelKernel& kernel) {
         return nearEdge(view_.survey.points, view_.camera.width(), at.x, at.y, kernel.footprints);
     };
-    kernels.caustic.edge = view_.plan.causticMap && leaves(kernels.caustic);
+    kernels.caustic.edge = edges == "on" && view_.plan.causticMap && leaves(kernels.caustic);
     kernels.others.edge = view_.plan.otherPhotons && leaves(kernels.others);
     return kernels;
 }

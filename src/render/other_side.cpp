@@ -21,7 +21,7 @@ KernelRadiusOptions otherRadiusOptions(const Settings& settings) {
 
 VisibleCells visibleToOthers(const Scene& scene, const Survey& seen, const Settings& settings) {
     const float kernels = std::max(otherRadiusOptions(settings).largest, static_cast<float>(settings.causticRadius));
-    return visibleWithin(seen.points, kernels, kMaxOtherRadius * scene.radius());
+    return visibleWithin(seen, kernels, kMaxOtherRadius * scene.radius());
 }
 
 OtherSide::OtherSide(const PreparedView& view) : view_(view) {

@@ -115,9 +115,13 @@ void findBlindSpots(Plan& plan, const Scene& scene, const RenderRequest& request
         plan.blindSpots.push_back(which +
                                   "bidirectional path tracing sees none of their caustics behind perfect mirrors or "
                                   "smooth glass (E S+ D S+ L)");
-    if ((request.method == Method::Photon || request.method == Method::Sppm) && !plan.causticMap &&
-        !plan.causticsToEyePaths)
+    if (request.method != Method::Photon && request.method != Method::Sppm) return;
+    if (!plan.causticMap && !plan.causticsToEyePaths)
         plan.blindSpots.push_back(which + "the caustic map is off and path tracing sees none of it");
+    else if (plan.causticMap && (scene.lobeKinds() & kGlossy) != kNoLobe)
+        plan.blindSpots.push_back(which +
+                                  "photons are looked up by diffuse reflection alone; what rough metal and rough coats "
+                                  "reflect of these caustics (E .. G S+ L) is missing, --method reference shows it");
 }
 
 }  // namespace

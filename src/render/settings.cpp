@@ -98,8 +98,9 @@ constexpr auto kParameters = std::to_array<Parameter>({
      ParameterPass::CausticMap},
     {"photon.kernel", &Settings::kernel, 0, 0, false, false, "epanechnikov|uniform|cone|biweight", "",
      "how the caustic kernel weighs photons by distance; each is 1 over its disc", ParameterPass::CausticMap},
-    {"photon.edges", &Settings::edges, 0, 0, false, false, "on|off", "",
-     "near an edge or a wall an estimate is divided by the part of its kernel that lies on the surface",
+    {"photon.edges", &Settings::edges, 0, 0, false, false, "auto|on|off", "",
+     "near an edge or a wall an estimate is divided by the part of its kernel that lies on the surface; auto: that of "
+     "sppm's other photons than the caustics', whose kernels are wide",
      ParameterPass::CausticMap},
     {"photon.memory", &Settings::photonMemory, 1, 1e9, true, true, "", "MB",
      "memory that photons and their maps may take: fewer paths are shot, none is dropped; auto: no limit. Scene, image "

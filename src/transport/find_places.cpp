@@ -41,7 +41,7 @@ std::vector<GatherPoint> findPlaces(const TransportContext& context, const std::
             ray.ray =
                 Ray{offsetOrigin(at.position, at.geometricNormal), direction, std::numeric_limits<float>::infinity()};
             ray.absorption = at.absorption;
-            at = Walk(context).findGatherPoint(ray, sampler);
+            at = Walk(context).findGatherPoint(ray, sampler, GatherStop::ByChance);
         }
         found[i] = at;
     });

@@ -10,7 +10,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kPlaces = 16;
+constexpr int kPlaces = 8;
 constexpr float kGoldenTurn = 0.38196601F;  ///< of places on a sunflower
 constexpr float kLeastMass = 0.1F;
 

@@ -18,6 +18,8 @@ namespace {
 
 /// A look for a D vertex is given up after this many others.
 constexpr int kMostOnTheWay = 64;
+/// Of the D vertices beyond the first that a look tells of.
+constexpr std::size_t kMostBeyond = 3;
 /// Of the threshold of roulette, along smooth chains from the eye whose branches are all followed: a weak reflection in glass
 /// is a small part of a pixel but mostly unlike the rest of it, so it is worth more looks than its share. Not many more, where
 /// glass stands behind glass.
@@ -60,12 +62,11 @@ struct Onward {
 
 }  // namespace
 
-/// Goes on over `sample`, with roulette. False: the walk ends.
-bool Walk::goOn(State& state, const Vertex& vertex, const BsdfSample& sample, const Rgb& weight,
-                Sampler& sampler) noexcept {
+/// Sends the ray on over `sample`.
+void Walk::leave(State& state, const Vertex& vertex, const BsdfSample& sample) noexcept {
     state.deltaChain = state.deltaChain && sample.delta;
     if (!sample.delta) state.wave = {};
-    state.throughput *= weight;
+    state.throughput *= sample.weight;
     state.etaScale *= sample.etaScale;
     state.pass(sample.kind);
     state.pdfSolidAngle = sample.pdfSolidAngle;
@@ -78,6 +79,11 @@ bool Walk::goOn(State& state, const Vertex& vertex, const BsdfSample& sample, co
                         std::numeric_limits<float>::infinity()};
     state.ray.absorption =
         medium::afterHit(context_.scene, vertex.hit.point, vertex.bsdf, state.ray.absorption, sample.transmitted);
+}
+
+/// Goes on over `sample`, with roulette. False: the walk ends.
+bool Walk::goOn(State& state, const Vertex& vertex, const BsdfSample& sample, Sampler& sampler) noexcept {
+    leave(state, vertex, sample);
     const float threshold = context_.options.rouletteThreshold * (splits(state) ? kChainRoulette : 1.0F);
     const float wanted = threshold > 0.0F ? maxComponent(state.throughput) * state.etaScale / threshold : 1.0F;
     const float chance = survival(wanted, state.vertices);
@@ -106,7 +112,7 @@ std::optional<BsdfSample> Walk::choose(const Vertex& vertex, LobeKinds sampled, 
 /// Goes on in a direction among `sampled` lobes. False: the walk ends.
 bool Walk::scatter(State& state, const Vertex& vertex, LobeKinds sampled, Sampler& sampler) noexcept {
     const auto sample = choose(vertex, sampled, sampler);
-    return sample && goOn(state, vertex, *sample, sample->weight, sampler);
+    return sample && goOn(state, vertex, *sample, sampler);
 }
 
 bool Walk::splits(const State& state) const noexcept {
@@ -120,7 +126,7 @@ bool Walk::split(State& state, const Vertex& vertex, Sampler& sampler, Branches&
     for (const BsdfSample& way : ways.branch) {
         State branch = state;
         branch.dimensions = kDimensionsPerBranch * ++branches.made;
-        if (goOn(branch, vertex, way, way.weight, sampler)) branches.waiting.push_back(branch);
+        if (goOn(branch, vertex, way, sampler)) branches.waiting.push_back(branch);
     }
     return true;
 }
@@ -247,30 +253,40 @@ Rgb Walk::gather(const WalkRay& ray, Sampler& sampler, float& distance) noexcept
     return state.radiance.total();
 }
 
-GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler) noexcept {
+GatherPoint Walk::findGatherPoint(const WalkRay& start, Sampler& sampler, GatherStop stop,
+                                  std::vector<GatherPoint>* beyond) {
     State state;
     state.ray = start;
-    for (;;) {
+    GatherPoint first;
+    for (std::size_t more = 0;;) {
         const std::uint64_t dimension =
             kFirstDimension + kDimensionsPerVertex * static_cast<std::uint64_t>(state.vertices);
         sampler.setDimension(dimension + kCoin);
         ++rays_;
         const auto hit = context_.scene.intersect(state.ray.ray, holes_ ? sampler.next1D() : 0.0F);
-        if (!hit || ++state.vertices > kMostOnTheWay) return {};
+        if (!hit || ++state.vertices > kMostOnTheWay) return first;
         state.pathLength += hit->distance;
         const glm::vec3 wo = -state.ray.ray.direction;
         if (wavelength::isDue(context_.scene, hit->point, state.wave)) takeWavelength(state, sampler);
         const Bsdf bsdf = context_.scene.surfaces().bsdf(hit->point, wo, state.wave);
         const float footprint = state.ray.footprintAtOrigin + state.ray.footprintSpread * state.pathLength;
         const Vertex vertex{*hit, bsdf, wo, footprint, glm::vec3(0.0F)};
+        const bool byChance = stop == GatherStop::ByChance;
         sampler.setDimension(dimension + kLobeChoice);
-        const auto onward = choose(vertex, bsdf.kinds(), sampler);
-        const bool diffuse = (bsdf.kinds() & kDiffuse) != kNoLobe;
-        if (diffuse && (!onward || onward->kind == kDiffuse))
-            return {
+        const auto onward = choose(vertex, byChance ? bsdf.kinds() : kSpecular | kGlossy, sampler);
+        const bool ends = !onward || onward->kind == kDiffuse;
+        if ((bsdf.kinds() & kDiffuse) != kNoLobe && (ends || !byChance)) {
+            const GatherPoint here{
                 true,      hit->point.position,  bsdf.shadingNormal(), bsdf.geometricNormal(), bsdf.unmappedNormal(),
                 footprint, state.ray.absorption, bsdf.diffuse()};
-        if (!onward || !goOn(state, vertex, *onward, onward->weight, sampler)) return {};
+            if (!first.valid)
+                first = here;
+            else
+                beyond->push_back(here);
+            if (beyond == nullptr || more++ == kMostBeyond) return first;
+        }
+        if (ends) return first;
+        leave(state, vertex, *onward);
     }
 }
 

@@ -14,12 +14,19 @@
 
 namespace pellucid {
 
-/// What the camera sees at D vertices: a walk a pixel, through its middle, to the first of them.
+struct Receiver {
+    glm::vec3 position{0.0F};
+    float footprint = 0.0F;  ///< of a pixel there, scene units
+};
+
+/// What the camera sees at D vertices: a walk a pixel, through its middle.
 struct Survey {
-    std::vector<GatherPoint> points;  ///< by pixel; not valid where no D vertex was found
-    std::size_t receivers = 0;        ///< pixels with a valid one
-    float medianFootprint = 0.0F;     ///< of a pixel there, scene units
-    VisibleCells visible{1.0F};       ///< around the points, as far as kernels reach
+    std::vector<GatherPoint> points;  ///< by pixel, the first; not valid where no D vertex was found
+    /// Receivers behind those, over other lobes of their surfaces: through half-clear glass, in the gloss of a floor.
+    std::vector<Receiver> beyond;
+    std::size_t receivers = 0;     ///< pixels with a valid one
+    float medianFootprint = 0.0F;  ///< of a pixel there, scene units
+    VisibleCells visible{1.0F};    ///< around points and receivers, as far as kernels reach
     std::uint64_t rays = 0;
 };
 

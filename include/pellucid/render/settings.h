@@ -34,7 +34,7 @@ struct Settings {
     double alpha = 2.0 / 3.0;             ///< photon.alpha: radius reduction
     std::string shrink = "alpha";         ///< photon.shrink: alpha | chi2
     std::string kernel = "epanechnikov";  ///< photon.kernel: epanechnikov | uniform | cone | biweight
-    std::string edges = "off";            ///< photon.edges: on | off
+    std::string edges = "auto";           ///< photon.edges: auto | on | off
     double photonMemory = -1.0;           ///< photon.memory: MB for photons and their maps; -1: no limit
     std::string guiding = "auto";         ///< photon.guiding: auto | on | off
     std::string causticMap = "auto";      ///< photon.caustic_map: auto | on | off

@@ -1,5 +1,5 @@
 /// Which parts of space the camera sees at D vertices, on a coarse grid: a photon that lands elsewhere is of no use to the
-/// caustic map. A false "seen" costs a photon; guiding keeps a uniform share, so that a false "unseen" costs no correctness.
+/// caustic map. A false "seen" costs a photon, a false "unseen" its light.
 #pragma once
 
 #include <cstdint>

@@ -94,6 +94,10 @@ struct GatherPoint {
     DiffuseLobe lobe;
 };
 
+/// Where a surface has a D lobe and others, too, a look for a D vertex ends there (neighbouring pixels do the same), or with the D
+/// lobe's share as its chance (every lobe gets its own points).
+enum class GatherStop { First, ByChance };
+
 struct PixelKernel {
     float footprints = 1.0F;  ///< radius
     bool edge = false;        ///< it may leave its surface: look how much of it does
@@ -125,8 +129,9 @@ public:
     /// `distance` receives the length to the first surface (infinity: none).
     [[nodiscard]] Rgb gather(const WalkRay& ray, Sampler& sampler, float& distance) noexcept;
 
-    /// Follows S and G lobes to a D vertex; where a surface has them all, chance decides by what each is worth.
-    [[nodiscard]] GatherPoint findGatherPoint(const WalkRay& ray, Sampler& sampler) noexcept;
+    /// Follows S and G lobes to a D vertex. `beyond` receives those that lie behind it, over its surface's other lobes.
+    [[nodiscard]] GatherPoint findGatherPoint(const WalkRay& ray, Sampler& sampler, GatherStop stop = GatherStop::First,
+                                              std::vector<GatherPoint>* beyond = nullptr);
 
     /// From now on every vertex is written down there (null: no longer).
     void writeTo(WalkTrace* trace) noexcept { trace_ = trace; }
@@ -151,8 +156,8 @@ private:
     static void takeWavelength(State& state, Sampler& sampler) noexcept;
     [[nodiscard]] bool splits(const State& state) const noexcept;
     [[nodiscard]] bool split(State& state, const Vertex& vertex, Sampler& sampler, Branches& branches) noexcept;
-    [[nodiscard]] bool goOn(State& state, const Vertex& vertex, const BsdfSample& sample, const Rgb& weight,
-                            Sampler& sampler) noexcept;
+    void leave(State& state, const Vertex& vertex, const BsdfSample& sample) noexcept;
+    [[nodiscard]] bool goOn(State& state, const Vertex& vertex, const BsdfSample& sample, Sampler& sampler) noexcept;
     [[nodiscard]] float chainShare(const State& state, std::uint32_t light, const glm::vec3& towards) const noexcept;
     void addEscaped(State& state) const noexcept;
     void addEmitted(State& state, const SurfaceHit& hit) const noexcept;
