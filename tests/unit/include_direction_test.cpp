@@ -29,10 +29,11 @@ struct Guest {
     bool sourcesOnly;
 };
 
-constexpr std::array<Guest, 9> kGuests{{
+constexpr std::array<Guest, 10> kGuests{{
     {"Embree", "embree3/.*", "src/geometry/", true},
     {"nanoflann", "nanoflann\\.hpp", "src/transport/", false},
     {"OpenImageIO", "OpenImageIO/.*", "src/io/image", true},
+    {"OpenEXR", "OpenEXR/.*", "src/io/exr", true},
     {"tinygltf", "tiny_gltf\\.h", "src/io/", true},
     {"oneTBB", "(tbb|oneapi)/.*", "src/base/", true},
     {"CLI11", "CLI/.*", "src/cli/", false},
